@@ -1,0 +1,33 @@
+"""How fast each joint may still move, given how near its limit it is."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from overreach.model.planar import Arm2R
+
+
+def fastest_towards(
+    theta: float, dtheta: float, least: float, most: float, speed: float, braking: float, dt: float
+) -> float:
+    """Return the greatest |dtheta| [rad/s] allowed in the direction of `dtheta` at `theta` [rad].
+
+    min(speed, sqrt(2 braking d), d/dt) with d the distance to the limit ahead [rad]: the joint can
+    always stop before it. Away from a limit the joint's own speed is allowed: backing out always works.
+    """
+    ahead = most - theta if dtheta >= 0.0 else theta - least
+    if ahead <= 0.0:
+        return 0.0
+    return min(speed, sqrt(2.0 * braking * ahead), ahead / dt)
+
+
+def fastest_joints(
+    arm: Arm2R, theta: tuple[float, ...], dtheta: tuple[float, ...], dt: float
+) -> tuple[float, ...]:
+    """Return `fastest_towards` for every joint of `arm`."""
+    return tuple(
+        fastest_towards(angle, rate, least, most, speed, 0.5 * braking, dt)
+        for angle, rate, least, most, speed, braking in zip(
+            theta, dtheta, arm.theta_min, arm.theta_max, arm.dtheta_max, arm.ddtheta_max, strict=True
+        )
+    )

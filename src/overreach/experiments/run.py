@@ -1,0 +1,123 @@
+"""Run a scenario headless: the same controller as the robot side, a stepped clock, no wire."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos
+from typing import NamedTuple
+
+from overreach.arm.planar import forward, hand_in_world, polar_rates, wrap
+from overreach.control import HandController
+from overreach.experiments.metrics import Summary, summarise
+from overreach.experiments.scenario import Scenario, load_scenario
+from overreach.gate.limits import limit_speed, slew
+from overreach.law.authority import ee_velocity
+from overreach.plugs import load_law
+from overreach.robots.kinematic import KinematicRobot
+from overreach.types import Verdict
+
+
+class Row(NamedTuple):
+    """One line of the CSV: the state at t, and the rates applied from t to t + dt."""
+
+    t: float
+    v_c: float
+    w_c: float
+    l: float
+    psi: float
+    theta_e: float
+    mu: float
+    sigma: float
+    v_b: float
+    v_bm: float
+    v_m: float
+    w_b: float
+    w_m: float
+    x_b: float
+    y_b: float
+    theta_b: float
+    x_e: float
+    y_e: float
+    theta_1: float
+    theta_2: float
+
+
+class Run(NamedTuple):
+    """A finished run.
+
+    rows: one a step; errors: per step, the EE's true rigid-body velocity less the commanded one,
+    (radial, tangential) [m/s]; summary: what happened.
+    """
+
+    scenario: Scenario
+    law: str
+    rows: list[Row]
+    errors: list[tuple[float, float]]
+    summary: Summary
+
+
+def steps(scenario: Scenario, law: str = "exact") -> Iterator[tuple[Row, tuple[float, float], Verdict]]:
+    """Yield (row, EE velocity error (radial, tangential) [m/s], verdict) step by step, in constant memory."""
+    model = scenario.model
+    controller = HandController(
+        model,
+        load_law(law, model.workspace, scenario.blend, model.mount),
+        scenario.frame,
+        limited=scenario.limits is not None,
+        whole_steps=True,
+    )
+    robot = KinematicRobot(model, scenario.imperfection, scenario.l, scenario.psi)
+    mount = (model.mount.s_x, model.mount.s_y, model.mount.yaw)
+    dt = scenario.dt
+    v_c = w_c = 0.0
+    for k in range(scenario.steps):
+        t = k * dt
+        wish = scenario.command_at(t)
+        if scenario.limits is None:
+            v_c, w_c = wish.v_c, wish.w_c
+        else:
+            goal_v, goal_w, _ = limit_speed(wish.v_c, wish.w_c, scenario.limits)
+            v_c, w_c, _ = slew((v_c, w_c), (goal_v, goal_w), scenario.limits, dt)
+        done = controller.step(robot.read(t), v_c, w_c, dt)
+        robot.write(done.twist, done.dtheta, t)
+        # What was asked for and what really happens, both seen where the hand truly is.
+        true = robot.true
+        l, psi = forward(*true.theta, *model.arm.links)
+        psi = wrap(psi)
+        theta_e = done.polar.theta_e
+        split = done.split
+        if scenario.imperfection.ideal:
+            v_m, w_m = split.v_m, split.w_m
+        else:
+            v_m, w_m = polar_rates(true.theta[1], *true.dtheta, *model.arm.links)
+        u_r, u_t = controller.commanded(v_c, w_c, l, psi, true.theta_b, theta_e)
+        e_r, e_t = ee_velocity(l, psi, true.v_b, true.w_b, v_m, w_m, mount)
+        psi_d = psi + model.mount.yaw
+        x_e, y_e = hand_in_world(true.x_b, true.y_b, true.theta_b, l, psi_d, model.mount.s_x, model.mount.s_y)
+        yield (
+            Row(
+                t, v_c, w_c, l, psi, theta_e, split.mu, split.sigma,
+                true.v_b, true.v_b * cos(psi_d), v_m, true.w_b, w_m,
+                true.x_b, true.y_b, true.theta_b, x_e, y_e, *true.theta,
+            ),
+            (e_r - u_r, e_t - u_t),
+            done.verdict,
+        )  # fmt: skip
+
+
+def simulate(scenario: Scenario | str, law: str = "exact") -> Run:
+    """Run `scenario` (or the built-in of that name, or a TOML file) with the law called `law`.
+
+    Raises SetupError when the scenario or the law cannot be used; a run itself raises nothing.
+    """
+    if isinstance(scenario, str):
+        scenario = load_scenario(scenario)
+    rows: list[Row] = []
+    errors: list[tuple[float, float]] = []
+    verdicts: dict[Verdict, int] = {}
+    for row, error, verdict in steps(scenario, law):
+        rows.append(row)
+        errors.append(error)
+        verdicts[verdict] = verdicts.get(verdict, 0) + 1
+    frame = scenario.frame or load_law(law).frame
+    return Run(scenario, law, rows, errors, summarise(scenario, law, frame, rows, errors, verdicts))

@@ -1,0 +1,293 @@
+"""What a scenario file may say. TOML in, a checked `Scenario` out; every error is one line.
+
+    [robot]      name = "planar", l = 0.65, psi = 0.0, shoulder = [0.0, 0.0], mount_yaw = 0.0,
+                 delay_s, lag_s, noise, seed (of the actuators and encoders; all 0)
+    [workspace]  l_min, l_max, psi_min, psi_max
+    [law]        blend = "tanh"|"smoothstep"|"step", alpha, beta (tanh), q_l, q_psi (smoothstep)
+    [command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
+    [limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, so that the law is seen
+"""
+
+from __future__ import annotations
+
+import bisect
+import csv
+import importlib.resources
+import math
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from overreach.errors import ScenarioError, UnknownNameError
+from overreach.gate.limits import Limits
+from overreach.law.blend import Blend, blend_from
+from overreach.law.workspace import Mount, Workspace
+from overreach.model.planar import PlanarRobot
+from overreach.plugs import load_robot
+from overreach.robots.imperfect import Imperfection
+from overreach.types import Command, Frame, Record
+
+MOST_STEPS = 20_000_000
+"""Longest run: 20,000 s at 1 ms. Above this a mistyped dt is likelier than a wish."""
+
+
+class RobotTable(Record, frozen=True):
+    """The table [robot]: l [m], psi [rad] of the hand at the start, shoulder [m], mount_yaw [rad]."""
+
+    name: str = "planar"
+    l: float | None = None
+    psi: float | None = None
+    shoulder: tuple[float, float] | None = None
+    mount_yaw: float | None = None
+    delay_s: float = 0.0
+    lag_s: float = 0.0
+    noise: float = 0.0
+    seed: int = 0
+
+
+class WorkspaceTable(Record, frozen=True):
+    """The table [workspace]; what is left out is the robot's own."""
+
+    l_min: float | None = None
+    l_max: float | None = None
+    psi_min: float | None = None
+    psi_max: float | None = None
+
+
+class LawTable(Record, frozen=True):
+    """The table [law]: the blend and its widths."""
+
+    blend: str = "tanh"
+    alpha: float = 50.0
+    beta: float = 50.0
+    q_l: float = 0.1
+    q_psi: float = 0.1
+
+
+class Segment(Record, frozen=True):
+    """From t [s] on, until the next segment, the command is (v_c, w_c)."""
+
+    t: float
+    v_c: float
+    w_c: float
+
+
+class CommandTable(Record, frozen=True):
+    """The table [command]."""
+
+    duration: float
+    dt: float = 0.001
+    frame: Frame | None = None
+    segments: tuple[Segment, ...] | None = None
+    file: str | None = None
+
+
+class Tables(Record, frozen=True):
+    """A scenario file, table by table."""
+
+    command: CommandTable
+    description: str = ""
+    robot: RobotTable = RobotTable()
+    workspace: WorkspaceTable = WorkspaceTable()
+    law: LawTable = LawTable()
+    limits: Limits | None = None
+
+
+class Scenario(Record, frozen=True):
+    """A scenario that can be run. Angles [rad], lengths [m], times [s]."""
+
+    name: str
+    description: str
+    model: PlanarRobot
+    imperfection: Imperfection
+    l: float
+    psi: float
+    blend: Blend
+    frame: Frame | None
+    duration: float
+    dt: float
+    segments: tuple[Segment, ...]
+    limits: Limits | None
+
+    @property
+    def steps(self) -> int:
+        """Number of control periods."""
+        return max(1, round(self.duration / self.dt))
+
+    def command_at(self, t: float) -> Command:
+        """Return the command that holds at `t` [s]; zero before the first segment."""
+        k = bisect.bisect_right(self.segments, t + 1e-9 * self.dt, key=lambda segment: segment.t) - 1
+        return Command(self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else Command()
+
+
+def builtin_scenarios() -> dict[str, str]:
+    """Return the built-in scenarios: name -> TOML text."""
+    folder = importlib.resources.files("overreach.experiments").joinpath("data")
+    return {
+        entry.name.removesuffix(".toml"): entry.read_text("utf-8")
+        for entry in sorted(folder.iterdir(), key=lambda entry: entry.name)
+        if entry.name.endswith(".toml")
+    }
+
+
+def load_scenario(which: str | os.PathLike[str]) -> Scenario:
+    """Return the built-in scenario called `which`, or the one in the TOML file `which`.
+
+    Raises ScenarioError (or another SetupError) whose text is one line.
+    """
+    name = os.fspath(which)
+    if not name.endswith(".toml") and os.sep not in name:
+        builtin = builtin_scenarios()
+        if name not in builtin:
+            raise UnknownNameError("scenario", name, [*builtin, "or a path ending in .toml"])
+        return parse_scenario(builtin[name], name)
+    path = Path(name)
+    try:
+        text = path.read_text("utf-8")
+    except FileNotFoundError:
+        choices = ", ".join(builtin_scenarios())
+        raise ScenarioError(f"no scenario file {name!r}. Built-in scenarios: {choices}.") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"cannot read scenario file {name!r}: {error}") from None
+    return parse_scenario(text, path.stem, path.parent)
+
+
+def parse_scenario(text: str, name: str = "scenario", folder: Path | None = None) -> Scenario:
+    """Return the scenario in TOML `text`; `folder` is where its command file is looked for."""
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ScenarioError(f"scenario {name!r} is not valid TOML: {error}") from None
+    _check_keys(raw, Tables, "", name)
+    _check_finite(raw, "", name)
+    try:
+        tables = msgspec.convert(raw, Tables)
+    except msgspec.ValidationError as error:
+        raise ScenarioError(f"scenario {name!r}: {_readable(error)}") from None
+    return _assemble(tables, name, folder or Path())
+
+
+_TABLES: dict[str, type[msgspec.Struct]] = {
+    "robot": RobotTable,
+    "workspace": WorkspaceTable,
+    "law": LawTable,
+    "command": CommandTable,
+    "limits": Limits,
+    "command.segments": Segment,
+}
+
+
+def _check_keys(table: dict[str, Any], struct: type[msgspec.Struct], where: str, name: str) -> None:
+    """Raise for a key that the table does not have, naming those that it has."""
+    for key, value in table.items():
+        path = f"{where}.{key}" if where else key
+        if key not in struct.__struct_fields__:
+            place = f"in [{where}]" if where else "at the top"
+            raise ScenarioError(
+                f"scenario {name!r}: {UnknownNameError(f'key {place}', key, struct.__struct_fields__)}"
+            )
+        inner = _TABLES.get(path)
+        if inner is not None:
+            for entry in value if isinstance(value, list) else [value]:
+                if isinstance(entry, dict):
+                    _check_keys(entry, inner, path, name)
+
+
+def _check_finite(value: Any, where: str, name: str) -> None:
+    """Raise for nan and inf, which TOML allows and a robot does not."""
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ScenarioError(f"scenario {name!r}: {where} must be a finite number, got {value}")
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            _check_finite(entry, f"{where}.{key}" if where else key, name)
+    elif isinstance(value, list):
+        for entry in value:
+            _check_finite(entry, where, name)
+
+
+def _readable(error: msgspec.ValidationError) -> str:
+    """Turn msgspec's `... - at `$.robot.l`` into a place first, then what is wrong."""
+    text, _, place = str(error).partition(" - at `$.")
+    return f"{place.rstrip('`')}: {text}" if place else text
+
+
+def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
+    command, robot = tables.command, tables.robot
+    if not (command.dt > 0.0 and command.duration > 0.0):
+        raise ScenarioError(
+            f"scenario {name!r}: command.duration and command.dt must be > 0 s, "
+            f"got {command.duration:g} and {command.dt:g}"
+        )
+    if command.duration / command.dt > MOST_STEPS:
+        raise ScenarioError(
+            f"scenario {name!r}: duration / dt is more than {MOST_STEPS:,} steps: use a greater dt or less time"
+        )
+    if (command.segments is None) == (command.file is None):
+        raise ScenarioError(f"scenario {name!r}: [command] needs either segments or file, one of the two")
+    if command.file is not None:
+        segments = _read_commands(folder / command.file, name)
+    else:
+        segments = command.segments or ()
+    if any(later.t <= earlier.t for earlier, later in zip(segments, segments[1:], strict=False)):
+        raise ScenarioError(f"scenario {name!r}: the times t of the commands must increase from row to row")
+
+    given = load_robot(robot.name)
+    own = given.workspace
+    asked = tables.workspace
+    workspace = Workspace(
+        own.l_min if asked.l_min is None else asked.l_min,
+        own.l_max if asked.l_max is None else asked.l_max,
+        own.psi_min if asked.psi_min is None else asked.psi_min,
+        own.psi_max if asked.psi_max is None else asked.psi_max,
+    )
+    s_x, s_y = robot.shoulder or (given.mount.s_x, given.mount.s_y)
+    mount = Mount(s_x, s_y, given.mount.yaw if robot.mount_yaw is None else robot.mount_yaw)
+    given.check_workspace(workspace)
+    start_l = given.start.l if robot.l is None else robot.l
+    start_psi = given.start.psi if robot.psi is None else robot.psi
+    given.check_reach(start_l)
+    if abs(start_psi) > math.pi:
+        raise ScenarioError(f"scenario {name!r}: robot.psi must be within +-pi rad, got {start_psi:g}")
+    law = tables.law
+    return Scenario(
+        name=name,
+        description=tables.description,
+        model=msgspec.structs.replace(given, workspace=workspace, mount=mount),
+        imperfection=Imperfection(robot.delay_s, robot.lag_s, robot.noise, robot.seed),
+        l=start_l,
+        psi=start_psi,
+        blend=blend_from(law.blend, law.alpha, law.beta, law.q_l, law.q_psi),
+        frame=command.frame,
+        duration=command.duration,
+        dt=command.dt,
+        segments=segments,
+        limits=tables.limits,
+    )
+
+
+def _read_commands(path: Path, name: str) -> tuple[Segment, ...]:
+    """Read t,v_c,w_c rows; a header line with those names is required."""
+    try:
+        with path.open(newline="", encoding="utf-8") as stream:
+            rows = list(csv.reader(stream))
+    except FileNotFoundError:
+        raise ScenarioError(f"scenario {name!r}: no command file {str(path)!r}") from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ScenarioError(f"scenario {name!r}: cannot read command file {str(path)!r}: {error}") from None
+    if not rows or [cell.strip() for cell in rows[0]] != ["t", "v_c", "w_c"]:
+        raise ScenarioError(f"scenario {name!r}: {path.name} must begin with the header t,v_c,w_c")
+    segments = []
+    for number, row in enumerate(rows[1:], start=2):
+        if not row:
+            continue
+        try:
+            t, v_c, w_c = (float(cell) for cell in row)
+        except ValueError:
+            t = v_c = w_c = math.nan
+        if not (math.isfinite(t) and math.isfinite(v_c) and math.isfinite(w_c)):
+            raise ScenarioError(f"scenario {name!r}: {path.name} line {number}: three finite numbers, got {row}")
+        segments.append(Segment(t, v_c, w_c))
+    return tuple(segments)

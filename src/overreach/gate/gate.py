@@ -1,0 +1,146 @@
+"""The gate: every command passes it, every tick ends in one verdict. Pure: time comes in as `now`.
+
+Freshness is age at the receiver. Ramp: decelerate to zero, staying armed. Disarm: ramp, then only
+release and press. What is still to come (SAFETY.md): the watchdog process, feedback checks, leases.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import final
+
+from overreach.errors import SetupError
+from overreach.gate.limits import Limits, limit_speed, slew
+from overreach.gate.stop import StopLatch
+from overreach.types import Record, Verdict
+
+STALE_S = 0.2
+"""Without a fresh command for this long [s], the command ramps to zero."""
+LOST_S = 1.0
+"""Without a fresh command for this long [s], the robot is disarmed."""
+
+
+class Stick(Record, frozen=True):
+    """One message of the operator's: the whole state of stick and dead-man.
+
+    operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held:
+    whether it is held; v_c, w_c: the command (see `overreach.types.Command`).
+    """
+
+    operator: int
+    seq: int
+    grip: int
+    held: bool
+    v_c: float
+    w_c: float
+
+
+class Gated(Record, frozen=True):
+    """What the gate lets through: v_c, w_c, the scale the speed limit put on them, and the verdict."""
+
+    v_c: float
+    w_c: float
+    scale: float
+    verdict: Verdict
+
+
+@final
+class Gate:
+    """Holds what was accepted last and ramps the command. One `tick` a period.
+
+    limits: of the command; speed_scale: part of `limits.v_c`, `limits.w_c` that the full stick asks for.
+    """
+
+    def __init__(self, limits: Limits | None = None, speed_scale: float = 1.0) -> None:
+        self.limits = limits or Limits()
+        self.latch = StopLatch()
+        self.speed_scale = speed_scale
+        self.refused = 0
+        self._stick: Stick | None = None
+        self._fresh_at = -math.inf
+        self._v_c = 0.0
+        self._w_c = 0.0
+
+    def set_speed_scale(self, value: float) -> None:
+        """Set the speed scale; raises SetupError unless 0 < value <= 1."""
+        if not 0.0 < value <= 1.0:
+            raise SetupError(f"speed scale must be > 0 and <= 1, got {value:g}")
+        self.speed_scale = value
+
+    @property
+    def resting(self) -> bool:
+        """Say whether the command has come down to zero."""
+        return self._v_c == 0.0 and self._w_c == 0.0
+
+    @property
+    def seq(self) -> int:
+        """Number of the last accepted message, 0 before the first."""
+        return self._stick.seq if self._stick else 0
+
+    def arm(self, operator: int) -> bool:
+        """Arm for `operator`. Says False while stopped; a dead-man that is already held does not count."""
+        held = self._stick.grip if self._stick and self._stick.operator == operator else 0
+        if self.latch.operator != operator:
+            self._stick = None
+        return self.latch.arm(operator, held)
+
+    def accept(self, stick: Stick, now: float) -> Verdict | None:
+        """Take a message that arrived at `now` [s]; return why it is refused, or None."""
+        latch = self.latch
+        refusal: Verdict | None = None
+        if not (math.isfinite(stick.v_c) and math.isfinite(stick.w_c)):
+            refusal = Verdict.NOT_FINITE
+        elif latch.armed and stick.operator != latch.operator:
+            refusal = Verdict.OTHER_OPERATOR
+        elif self._stick and stick.operator == self._stick.operator and stick.seq <= self._stick.seq:
+            refusal = Verdict.OUT_OF_ORDER
+        if refusal:
+            self.refused += 1
+            return refusal
+        if latch.armed and self._was_lost(now) and self._stick:
+            # The signal comes back before a tick has seen that it was gone: it is lost all the same.
+            latch.spend(self._stick.grip)
+        self._stick = stick
+        self._fresh_at = now
+        return None
+
+    def _was_lost(self, now: float) -> bool:
+        return self._stick is not None and self._stick.held and now - self._fresh_at > LOST_S
+
+    def _wish(self, now: float) -> tuple[float, float, Verdict]:
+        """Return the command that is asked for and allowed at `now`, before speed limits and ramps."""
+        latch, stick = self.latch, self._stick
+        if latch.stopped:
+            return 0.0, 0.0, Verdict.STOPPED
+        if not latch.armed:
+            return 0.0, 0.0, Verdict.DISARMED
+        if stick is None or stick.operator != latch.operator or not stick.held:
+            return 0.0, 0.0, Verdict.RELEASED
+        age = now - self._fresh_at
+        if age > LOST_S:
+            latch.spend(stick.grip)
+            return 0.0, 0.0, Verdict.LOST
+        if age > STALE_S:
+            if self.resting:
+                latch.spend(stick.grip)
+            return 0.0, 0.0, Verdict.STALE
+        if stick.grip <= latch.spent_grip:
+            return 0.0, 0.0, Verdict.REGRIP
+        return stick.v_c, stick.w_c, Verdict.MOVING
+
+    def tick(self, now: float, dt: float, refusal: Verdict | None = None) -> Gated:
+        """Return the command for the period `dt` [s] that begins at `now` [s].
+
+        `refusal`: why a message was refused since the last tick; shown if nothing weightier is.
+        """
+        v_c, w_c, verdict = self._wish(now)
+        v_c, w_c, scale = limit_speed(v_c * self.speed_scale, w_c * self.speed_scale, self.limits)
+        self._v_c, self._w_c, ramping = slew((self._v_c, self._w_c), (v_c, w_c), self.limits, dt)
+        if verdict is Verdict.MOVING:
+            if scale < 1.0:
+                verdict = Verdict.SPEED
+            elif ramping:
+                verdict = Verdict.ACCELERATION
+        if refusal and verdict not in (Verdict.STOPPED, Verdict.DISARMED, Verdict.LOST):
+            verdict = refusal
+        return Gated(self._v_c, self._w_c, scale, verdict)

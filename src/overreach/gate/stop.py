@@ -1,0 +1,52 @@
+"""The latches of the gate: stopped, armed, and the press of the dead-man that still counts.
+
+    start -> DISARMED --arm--> ARMED --(release, press)--> MOVING
+    any --stop--> STOPPED --reset--> DISARMED
+
+A press of the dead-man is told apart by its number (`grip`, counted by the operator's side), not by an
+edge, because on a latest-wins link the release between two presses may never arrive.
+"""
+
+from __future__ import annotations
+
+from typing import final
+
+
+@final
+class StopLatch:
+    """Who may move the robot, and whether."""
+
+    def __init__(self) -> None:
+        self.stopped = False
+        self.armed = False
+        self.operator = 0
+        """Session of the operator who armed; 0 while there is none."""
+        self.spent_grip = 0
+        """Presses up to this number no longer count: only release and a new press move the robot."""
+
+    def stop(self) -> None:
+        """Latch the stop. Anyone may, at any time."""
+        self.stopped = True
+        self.armed = False
+
+    def reset(self) -> None:
+        """Release the latch. Nothing moves: the robot is disarmed."""
+        self.stopped = False
+        self.armed = False
+
+    def arm(self, operator: int, grip: int) -> bool:
+        """Arm for `operator`; a press (`grip`) that is already held does not count. False while stopped."""
+        if self.stopped:
+            return False
+        self.armed = True
+        self.operator = operator
+        self.spent_grip = grip
+        return True
+
+    def disarm(self) -> None:
+        """Disarm. The robot comes to rest."""
+        self.armed = False
+
+    def spend(self, grip: int) -> None:
+        """From now on only a press later than `grip` moves the robot."""
+        self.spent_grip = max(self.spent_grip, grip)

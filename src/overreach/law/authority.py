@@ -1,0 +1,177 @@
+"""The sharing laws as pure functions of floats: `paper` (and with a step blend `switch`), `exact`.
+
+Each takes the EE's position about the shoulder (l [m], psi [rad], from the arm's x axis), its
+commanded velocity in polar components in the base frame (u_r outward, u_t counter-clockwise
+[m/s]), the blend's `rise`, limits = (l_min, l_max, psi_min, psi_max, k_l, k_psi) and
+mount = (s_x, s_y, yaw), and returns (mu, sigma, v_b, w_b, v_m, w_m, scale), as in
+`overreach.types.Split`. Both are homogeneous: a scaled command gives scaled rates.
+"""
+
+from __future__ import annotations
+
+from math import atan2, copysign, cos, pi, sin, sqrt
+
+from overreach.law.blend import Rise
+
+Limits6 = tuple[float, float, float, float, float, float]
+Mount3 = tuple[float, float, float]
+Shares = tuple[float, float, float, float, float, float, float]
+
+BASE_GAIN = 5.0
+"""The base drives at most this many times as fast as the hand; nearer to c = 0 all is scaled."""
+
+LEVER_MIN = 0.1
+"""The lever k_t by which the base turns the hand is taken as at least this part of l."""
+
+
+def scaled_drive(drive: float, lined: float, speed: float) -> tuple[float, float]:
+    """Return (v_b [m/s], scale) where v_b = drive / lined would pass BASE_GAIN times the hand's speed.
+
+    There the hand is beside the base and driving hardly moves it radially. The whole command is
+    scaled by (bound / |v_b|)^2, so that v_b goes to 0, not to infinity, as `lined` does.
+    """
+    ratio = BASE_GAIN * speed * abs(lined) / abs(drive)
+    return copysign(BASE_GAIN * speed * ratio, drive * lined), ratio * ratio
+
+
+def paper(
+    l: float,
+    psi: float,
+    u_r: float,
+    u_t: float,
+    rise: Rise,
+    limits: Limits6,
+    mount: Mount3,
+) -> Shares:
+    """Share as the paper does, with v_c = u_r and w_c = u_t / l.
+
+    v_bm = mu v_c, v_m = (1 - mu) v_c, v_b = v_bm / cos psi, w_b = sigma w_c, w_m = (1 - sigma) w_c.
+    In true kinematics the EE leaves the command by mu |v_c tan psi|. Source: Kwon et al. 2026, (12) to (16).
+    """
+    l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
+    w_c = u_t / l
+    mu = rise(l - l_max, k_l) if u_r >= 0.0 else rise(l_min - l, k_l)
+    sigma = rise(psi - psi_max, k_psi) if w_c >= 0.0 else rise(psi_min - psi, k_psi)
+    drive = mu * u_r
+    c = cos(psi + mount[2])
+    speed = sqrt(u_r * u_r + u_t * u_t)
+    scale = 1.0
+    if abs(drive) > BASE_GAIN * speed * abs(c):
+        v_b, scale = scaled_drive(drive, c, speed)
+        u_r *= scale
+        w_c *= scale
+    else:
+        v_b = drive / c if drive != 0.0 else 0.0
+    return mu, sigma, v_b, sigma * w_c, (1.0 - mu) * u_r, (1.0 - sigma) * w_c, scale
+
+
+def exact(
+    l: float,
+    psi: float,
+    u_r: float,
+    u_t: float,
+    rise: Rise,
+    limits: Limits6,
+    mount: Mount3,
+) -> Shares:
+    """Share so that the EE does exactly what is commanded: the arm closes the residual.
+
+    With c = cos psi_d, sn = sin psi_d, psi_d = psi + yaw, and the levers k_r = s_x sn - s_y c,
+    k_t = l + s_x c + s_y sn of a base rotation:
+        v_b = (mu u_r - sigma u_t k_r/k_t) / (c + sigma sn k_r/k_t + (1 - sigma) q k_r)
+        w_b = sigma (u_t + v_b sn)/k_t + (1 - sigma) q v_b
+        v_m = u_r - c v_b - k_r w_b,   w_m = (u_t + sn v_b - k_t w_b)/l
+    q [rad/m] lines the base up behind the hand's line of motion while it drives.
+    Source: design of this project (docs/why.md), after the shares of Kwon et al. 2026.
+    """
+    l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
+    s_x, s_y, yaw = mount
+    psi_d = psi + yaw
+    c = cos(psi_d)
+    sn = sin(psi_d)
+    k_r = s_x * sn - s_y * c
+    k_t = l + s_x * c + s_y * sn
+    lever = k_t if k_t > LEVER_MIN * l else LEVER_MIN * l
+
+    mu = rise(l - l_max, k_l) if u_r >= 0.0 else rise(l_min - l, k_l)
+    speed = sqrt(u_r * u_r + u_t * u_t)
+    q = 0.0
+    if mu > 0.0 and speed > 0.0:
+        # Line up behind the hand. eta is the heading, from the base's, of the hand's line of motion (of u
+        # if u_r >= 0, else of -u), y the base's offset to the left of it, L = |p| the hand's distance:
+        # q = -y/L^2 + 2 g eta/L. Deviations die out at -|v_b|/l (double), driving and reversing alike.
+        g = 1.0 if u_r >= 0.0 else -1.0
+        turn = atan2(g * u_t, g * u_r)
+        eta = psi_d + turn
+        if eta > pi or eta < -pi:
+            eta -= copysign(2.0 * pi, eta)
+        y = g * l * u_t / speed
+        length_2 = l * l
+        if s_x != 0.0 or s_y != 0.0:
+            y += s_x * sin(eta) - s_y * cos(eta)
+            length_2 = max(2.0 * l * k_t - length_2 + s_x * s_x + s_y * s_y, 0.01 * length_2)
+        q = (2.0 * g * eta * sqrt(length_2) - y) / length_2
+
+    # w_des, the arm's bearing rate if the base only lined up, has the same sign for every sigma wherever
+    # driving helps at all: solving the radial balance for sigma = 0 tells it, and nothing is searched.
+    swing = sn - k_t * q
+    lined = c + q * k_r
+    drive = mu * u_r
+    if (u_t * lined + drive * swing) * lined >= 0.0:
+        sigma = rise(psi - psi_max, k_psi)
+    else:
+        sigma = rise(psi_min - psi, k_psi)
+    if k_r != 0.0:
+        ratio = sigma * k_r / lever
+        drive -= u_t * ratio
+        lined += swing * ratio
+    scale = 1.0
+    if abs(drive) > BASE_GAIN * speed * abs(lined):
+        v_b, scale = scaled_drive(drive, lined, speed)
+    else:
+        v_b = drive / lined if drive != 0.0 else 0.0
+    if scale != 1.0:
+        u_r *= scale
+        u_t *= scale
+    d = u_t + v_b * sn
+    w_b = sigma * d / lever + (1.0 - sigma) * q * v_b
+    return mu, sigma, v_b, w_b, u_r - c * v_b - k_r * w_b, (d - k_t * w_b) / l, scale
+
+
+def ee_velocity(
+    l: float,
+    psi: float,
+    v_b: float,
+    w_b: float,
+    v_m: float,
+    w_m: float,
+    mount: Mount3,
+) -> tuple[float, float]:
+    """Return the EE's true rigid-body velocity (radial, tangential) [m/s], in the base frame's axes.
+
+    u_r = v_b cos psi_d + w_b k_r + v_m,   u_t = -v_b sin psi_d + w_b k_t + l w_m
+    """
+    s_x, s_y, yaw = mount
+    c = cos(psi + yaw)
+    sn = sin(psi + yaw)
+    return (
+        v_b * c + w_b * (s_x * sn - s_y * c) + v_m,
+        -v_b * sn + w_b * (l + s_x * c + s_y * sn) + l * w_m,
+    )
+
+
+def arm_residual(
+    l: float,
+    psi: float,
+    u_r: float,
+    u_t: float,
+    v_b: float,
+    w_b: float,
+    mount: Mount3,
+) -> tuple[float, float]:
+    """Return (v_m [m/s], w_m [rad/s]): what the arm must do so that the EE moves at (u_r, u_t).
+
+    (v_b, w_b) is the base twist that is really happening: the base may lag, slip or be limited.
+    """
+    b_r, b_t = ee_velocity(l, psi, v_b, w_b, 0.0, 0.0, mount)
+    return u_r - b_r, (u_t - b_t) / l

@@ -1,0 +1,84 @@
+"""A robot that moves exactly as velocity-controlled joints and wheels would: no masses, no contact."""
+
+from __future__ import annotations
+
+from typing import final
+
+from overreach.arm.planar import inverse
+from overreach.model.planar import PlanarRobot, load_planar
+from overreach.robots.arc import arc
+from overreach.robots.imperfect import Actuators, Imperfection, JointNoise
+from overreach.types import BaseTwist, RobotState
+
+LONGEST_PIECE = 0.005
+"""A lagging base turns while its twist changes: it is integrated in pieces of at most this [s]."""
+
+
+@final
+class KinematicRobot:
+    """The planar robot in simulation. The base follows exact arcs; joints stop at their limits.
+
+    `true` is the state without measurement noise; `read` gives what a sensor would show.
+    """
+
+    def __init__(
+        self,
+        model: PlanarRobot | None = None,
+        imperfection: Imperfection | None = None,
+        l: float | None = None,
+        psi: float | None = None,
+        now: float = 0.0,
+    ) -> None:
+        self.model = model or load_planar()
+        self._imperfection = imperfection or Imperfection()
+        self._l = self.model.start.l if l is None else l
+        self._psi = self.model.start.psi if psi is None else psi
+        self.model.check_reach(self._l)
+        self.restart(now)
+
+    def restart(self, now: float) -> None:
+        """Put the robot at its start, at rest."""
+        arm = self.model.arm
+        self._pose = (0.0, 0.0, 0.0)
+        self._theta: tuple[float, ...] = inverse(self._l, self._psi, *arm.links, arm.elbow)
+        self._actuators = Actuators(4, self._imperfection)
+        self._noise = JointNoise(self._imperfection)
+        self._now = now
+
+    @property
+    def true(self) -> RobotState:
+        """The state at the time of the last call, without noise."""
+        v_b, w_b, *dtheta = self._actuators.happening
+        return RobotState(self._now, *self._pose, v_b, w_b, self._theta, tuple(dtheta))
+
+    def read(self, now: float) -> RobotState:
+        """Return the measured state at `now` [s]."""
+        self._move_to(now)
+        v_b, w_b, *dtheta = self._actuators.happening
+        return RobotState(self._now, *self._pose, v_b, w_b, self._noise.measured(self._theta), tuple(dtheta))
+
+    def write(self, twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
+        """Ask for a base twist and joint rates from `now` on."""
+        self._move_to(now)
+        self._actuators.ask((twist.v_b, twist.w_b, *dtheta), now)
+
+    def stop(self, now: float) -> None:
+        """Ask for standstill."""
+        self.write(BaseTwist(), (0.0, 0.0), now)
+
+    def _move_to(self, end: float) -> None:
+        while self._now < end:
+            until = self._actuators.next_change(self._now, end)
+            if not self._actuators.ideal:
+                until = min(until, self._now + LONGEST_PIECE)
+            dt = until - self._now
+            v_b, w_b, *dtheta = self._actuators.advance(dt)
+            self._pose = arc(*self._pose, v_b, w_b, dt)
+            arm = self.model.arm
+            self._theta = tuple(
+                min(most, max(least, angle + rate * dt))
+                for angle, rate, least, most in zip(
+                    self._theta, dtheta, arm.theta_min, arm.theta_max, strict=True
+                )
+            )
+            self._now = until
