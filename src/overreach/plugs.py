@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
@@ -18,13 +19,19 @@ ROBOTS = "overreach.robots"
 """Entry points to makers: () -> PlanarRobot."""
 
 
+@cache
+def _points(group: str) -> dict[str, EntryPoint]:
+    """Read the installed packages' entry points, once: it takes milliseconds."""
+    return {point.name: point for point in entry_points(group=group)}
+
+
 def names(group: str) -> list[str]:
     """Return the names in an entry-point group, sorted."""
-    return sorted({point.name for point in entry_points(group=group)})
+    return sorted(_points(group))
 
 
 def _load(group: str, kind: str, name: str) -> Callable[..., Any]:
-    found: dict[str, EntryPoint] = {point.name: point for point in entry_points(group=group)}
+    found = _points(group)
     if name not in found:
         raise UnknownNameError(kind, name, found)
     maker: Callable[..., Any] = found[name].load()

@@ -65,6 +65,21 @@ class Command(Record, frozen=True):
     w_c: float = 0.0
 
 
+class Stick(Record, frozen=True):
+    """One message of the operator's: the whole state of stick and dead-man.
+
+    operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held:
+    whether it is held; v_c, w_c: the command (see `Command`).
+    """
+
+    operator: int
+    seq: int
+    grip: int
+    held: bool
+    v_c: float
+    w_c: float
+
+
 class PolarState(Record, frozen=True):
     """The EE seen from the shoulder.
 

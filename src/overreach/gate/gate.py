@@ -12,27 +12,12 @@ from typing import final
 from overreach.errors import SetupError
 from overreach.gate.limits import Limits, limit_speed, slew
 from overreach.gate.stop import StopLatch
-from overreach.types import Record, Verdict
+from overreach.types import Record, Stick, Verdict
 
 STALE_S = 0.2
 """Without a fresh command for this long [s], the command ramps to zero."""
 LOST_S = 1.0
 """Without a fresh command for this long [s], the robot is disarmed."""
-
-
-class Stick(Record, frozen=True):
-    """One message of the operator's: the whole state of stick and dead-man.
-
-    operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held:
-    whether it is held; v_c, w_c: the command (see `overreach.types.Command`).
-    """
-
-    operator: int
-    seq: int
-    grip: int
-    held: bool
-    v_c: float
-    w_c: float
 
 
 class Gated(Record, frozen=True):

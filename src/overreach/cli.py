@@ -1,0 +1,47 @@
+"""The command line: help and version at once, every command through `overreach.commands`.
+
+Help does not import the typed commands: their library takes longer to import than help may take to print.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from overreach import __version__
+from overreach.errors import OverreachError
+
+HELP = f"""\
+overreach {__version__}: drive a whole mobile manipulator by its hand.
+
+  overreach drive                a simulated robot and a page to drive it with
+  overreach simulate outward     run a scenario without a page (--out run.csv for the data)
+
+  overreach laws                 the laws, blends and command frames there are
+  overreach robots               the robots there are
+  overreach doctor               what is installed, what is missing, how to get it
+
+  overreach robot --listen HOST:PORT       the two halves of drive,
+  overreach cockpit --connect HOST:PORT    for two machines
+
+Add --help to any command for its options.
+"""
+
+
+def main() -> None:
+    """Entry point of `overreach`. Exit code 2 for what cannot be used, with one line that says why."""
+    arguments = sys.argv[1:]
+    if arguments in ([], ["help"], ["--help"], ["-h"]):
+        print(HELP, end="")
+        return
+    if arguments in (["--version"], ["version"]):
+        print(f"overreach {__version__}")
+        return
+    from overreach.commands import app
+
+    try:
+        app.cli(prog="overreach", args=arguments, sort_subcommands=False)
+    except OverreachError as error:
+        print(f"overreach: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
+    except KeyboardInterrupt:
+        raise SystemExit(130) from None

@@ -1,0 +1,139 @@
+"""The commands, typed. Each imports what it needs when it runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from tyro.extras import SubcommandApp
+
+app = SubcommandApp()
+
+
+@app.command
+def drive(
+    robot: str = "planar",
+    port: int | None = None,
+    host: str = "127.0.0.1",
+    rate: float = 200.0,
+    browser: bool = True,
+) -> None:
+    """Start a simulated robot and the page to drive it with; open a browser where there is one.
+
+    Args:
+        robot: Name of the robot (see `overreach robots`).
+        port: Port of the page; by default 8420, or a free one where that is taken.
+        host: Address the page is served at. Anyone who can reach it can drive the robot.
+        rate: Rate of the control loop [Hz], 50 to 1000.
+        browser: Whether to open a browser.
+    """
+    from overreach.cockpit.drive import run_drive
+
+    run_drive(robot, host, port, rate, browser)
+
+
+@app.command
+def robot(
+    robot: Annotated[str, tyro.conf.Positional] = "planar",
+    listen: str = "tcp/127.0.0.1:7460",
+    rate: float = 200.0,
+    parent: Annotated[int | None, tyro.conf.Suppress] = None,
+) -> None:
+    """Run the robot side: loop, gate, law and robot. A cockpit connects to it.
+
+    Args:
+        robot: Name of the robot (see `overreach robots`).
+        listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
+        rate: Rate of the control loop [Hz], 50 to 1000.
+        parent: End when this process ends.
+    """
+    from overreach.robot_side import run_robot
+
+    run_robot(robot, listen, rate, parent)
+
+
+@app.command
+def cockpit(
+    connect: str = "tcp/127.0.0.1:7460",
+    port: int | None = None,
+    host: str = "127.0.0.1",
+    browser: bool = True,
+) -> None:
+    """Run the operator side: the page, connected to a robot side.
+
+    Args:
+        connect: Endpoint of the robot side, HOST:PORT or tcp/HOST:PORT.
+        port: Port of the page; by default 8420, or a free one where that is taken.
+        host: Address the page is served at. Anyone who can reach it can drive the robot.
+        browser: Whether to open a browser.
+    """
+    from overreach.cockpit.drive import run_cockpit
+
+    run_cockpit(connect, host, port, browser)
+
+
+@app.command
+def simulate(
+    scenario: Annotated[str, tyro.conf.Positional],
+    law: str = "exact",
+    out: Path | None = None,
+    json: bool = False,
+) -> None:
+    """Run a scenario without a page, as fast as it goes, and say what happened.
+
+    Args:
+        scenario: A built-in scenario (outward, inward, left, right, mixed, aside) or a TOML file.
+        law: Name of the law (see `overreach laws`).
+        out: CSV file to write, one row a step.
+        json: Print the summary as JSON.
+    """
+    import msgspec
+
+    from overreach.experiments.csvfile import check_writable, write_csv
+    from overreach.experiments.metrics import table
+    from overreach.experiments.run import simulate as run_scenario
+
+    if out is not None:
+        check_writable(out)
+    run = run_scenario(scenario, law)
+    if out is not None:
+        write_csv(out, run.rows)
+    if json:
+        print(msgspec.json.encode(run.summary).decode())
+    else:
+        print(table(run.summary))
+
+
+@app.command
+def laws() -> None:
+    """List the laws, the blends and the command frames."""
+    from overreach.law.blend import BLENDS
+    from overreach.law.frame import FRAMES
+    from overreach.plugs import LAWS, summaries
+
+    _list("laws (--law)", summaries(LAWS))
+    _list("blends", BLENDS)
+    _list("command frames", {name: (frame.__doc__ or "").splitlines()[0] for name, frame in FRAMES.items()})
+
+
+@app.command
+def robots() -> None:
+    """List the robots."""
+    from overreach.plugs import ROBOTS, summaries
+
+    _list("robots", summaries(ROBOTS))
+
+
+@app.command
+def doctor() -> None:
+    """Say what is installed, what is missing and how to get it."""
+    from overreach.doctor import report
+
+    print(report())
+
+
+def _list(title: str, entries: dict[str, str]) -> None:
+    print(title)
+    for name, line in entries.items():
+        print(f"  {name:<12}{line}")

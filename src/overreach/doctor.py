@@ -1,0 +1,60 @@
+"""What this machine has, what it lacks and the line that brings it."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import sys
+from importlib.metadata import PackageNotFoundError, version
+
+from overreach import __version__
+
+NEEDED = {
+    "nicegui": "the page",
+    "eclipse-zenoh": "the link between the halves",
+    "msgspec": "messages",
+    "tyro": "this command line",
+}
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "firefox", "xdg-open", "open")
+
+
+def _line(good: bool, what: str, found: str, remedy: str = "") -> str:
+    mark = "ok     " if good else "missing"
+    return f"  {mark}  {what:<22}{found}" + (f"  ->  {remedy}" if not good and remedy else "")
+
+
+def _package(name: str, job: str) -> str:
+    try:
+        return _line(True, name, f"{version(name)}  ({job})")
+    except PackageNotFoundError:
+        return _line(False, name, f"({job})", f"pip install {name}")
+
+
+def _real_time() -> str:
+    try:
+        before = os.sched_getscheduler(0)
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+        os.sched_setscheduler(0, before, os.sched_param(0))
+    except (AttributeError, OSError):
+        return _line(
+            False,
+            "SCHED_FIFO",
+            "not permitted: the loop may be some ms late on a busy machine",
+            "give your user rtprio in /etc/security/limits.conf",
+        )
+    return _line(True, "SCHED_FIFO", "permitted: the loop keeps its time on a busy machine")
+
+
+def report() -> str:
+    """Return the report as text."""
+    python_fits = sys.version_info >= (3, 11)
+    browser = next((name for name in BROWSERS if shutil.which(name)), None)
+    lines = [
+        f"overreach {__version__} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        _line(python_fits, "python", platform.python_version(), "install Python 3.11 or newer"),
+        *(_package(name, job) for name, job in NEEDED.items()),
+        _line(browser is not None, "browser", browser or "none found", "open the printed address elsewhere"),
+        _real_time(),
+    ]
+    return "\n".join(lines)

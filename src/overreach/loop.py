@@ -1,0 +1,192 @@
+"""The robot side: one tick, top to bottom, at a fixed rate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import final
+
+from overreach import __version__
+from overreach.arm.planar import hand_in_world
+from overreach.clock import Clock
+from overreach.control import HandController, Step
+from overreach.errors import OverreachError
+from overreach.gate.gate import STALE_S, Gate, Gated
+from overreach.law.blend import blend_from
+from overreach.law.laws import Law
+from overreach.law.workspace import Workspace
+from overreach.link.messages import (
+    PROTOCOL,
+    Accepted,
+    Answer,
+    Arm,
+    Configure,
+    Disarm,
+    Hello,
+    Refused,
+    Request,
+    Reset,
+    Restart,
+    Settings,
+    State,
+    Stop,
+    Welcome,
+)
+from overreach.link.robot_end import RobotEnd
+from overreach.model.planar import PlanarRobot
+from overreach.plugs import load_law
+from overreach.robots.kinematic import KinematicRobot
+from overreach.timing import Lateness
+from overreach.types import Frame, RobotState, Verdict
+
+STATE_PERIOD_S = 1.0 / 60.0
+"""A state is sent when a stick was accepted, and at the latest after this [s]."""
+
+
+@final
+class Loop:
+    """Reads the robot and the link, decides, writes. `tick` raises nothing; `run` keeps the time."""
+
+    def __init__(
+        self, model: PlanarRobot, robot: KinematicRobot, link: RobotEnd, clock: Clock, rate: float = 200.0
+    ) -> None:
+        self.model = model
+        self.rate = rate
+        self.gate = Gate()
+        self.late = Lateness()
+        self.overruns = 0
+        self._robot = robot
+        self._link = link
+        self._clock = clock
+        space = model.workspace
+        self.settings = Settings(
+            l_min=space.l_min, l_max=space.l_max, psi_min=space.psi_min, psi_max=space.psi_max
+        )
+        self.controller = HandController(model, self._law(self.settings), Frame(self.settings.frame))
+        self._revision = 0
+        self._tick = 0
+        self._sent_at = -inf
+        self._told = (0.0, 0.0, 0.0)
+        self._told_at = -inf
+
+    def run(self, running: Callable[[], bool]) -> None:
+        """Tick at `rate` while `running()`. An overrun is counted and the missed ticks are left out."""
+        period = 1.0 / self.rate
+        deadline = self._clock.now() + period
+        try:
+            while running():
+                self._clock.sleep_until(deadline)
+                now = self._clock.now()
+                self.late.add(now - deadline)
+                self.tick(now, period)
+                deadline += period
+                if (behind := self._clock.now() - deadline) > 0.0:
+                    missed = int(behind / period) + 1
+                    self.overruns += missed
+                    deadline += missed * period
+        finally:
+            self._robot.stop(self._clock.now())
+
+    def tick(self, now: float, dt: float) -> None:
+        """Do one period: robot and link in, gate, law and arm, robot and link out."""
+        state = self._robot.read(now)
+        self._serve(now)
+        stick = self._link.newest_stick()
+        refusal = self.gate.accept(stick, now) if stick else None
+        gated = self.gate.tick(now, dt, refusal)
+        step = self.controller.step(state, gated.v_c, gated.w_c, dt)
+        self._robot.write(step.twist, step.dtheta, now)
+        self._tick += 1
+        if (stick and not refusal) or now - self._sent_at >= STATE_PERIOD_S:
+            self._sent_at = now
+            self._link.publish(self._report(now, state, gated, step))
+
+    def _serve(self, now: float) -> None:
+        """Carry out what was asked for since the last tick."""
+        for hello, answer in self._link.hellos():
+            answer(self._welcome(hello))
+        for request, answer in self._link.requests():
+            try:
+                answer(self._carry_out(request, now))
+            except OverreachError as error:
+                answer(Refused(str(error)))
+
+    def _carry_out(self, request: Request, now: float) -> Answer:
+        latch = self.gate.latch
+        match request:
+            case Stop():
+                latch.stop()
+            case Reset():
+                latch.reset()
+            case Disarm():
+                latch.disarm()
+            case Arm(operator):
+                if not self.gate.arm(operator):
+                    return Refused("Stopped: press Reset first.")
+            case Restart():
+                if latch.armed or not self.gate.resting:
+                    return Refused("Disarm first, and wait until the robot stands still.")
+                self._robot.restart(now)
+                self.controller.restart()
+            case Configure(settings):
+                self._configure(settings)
+        return Accepted()
+
+    def _law(self, settings: Settings) -> Law:
+        workspace = Workspace(settings.l_min, settings.l_max, settings.psi_min, settings.psi_max)
+        self.model.check_workspace(workspace)
+        blend = blend_from(settings.blend, settings.alpha, settings.beta, settings.q_l, settings.q_psi)
+        return load_law(settings.law, workspace, blend, self.model.mount)
+
+    def _configure(self, settings: Settings) -> None:
+        """Use `settings`; raises SetupError, with nothing changed, where they cannot be used."""
+        law, frame = self._law(settings), Frame(settings.frame)
+        self.gate.set_speed_scale(settings.speed_scale)
+        self.controller.configure(law, frame)
+        self.settings = settings
+        self._revision += 1
+
+    def _welcome(self, hello: Hello) -> Answer:
+        if hello.protocol != PROTOCOL:
+            return Refused(
+                f"the robot side speaks protocol {PROTOCOL} (overreach {__version__}), the operator side "
+                f"{hello.protocol} (overreach {hello.version}): install the same version on both"
+            )
+        base, limits = self.model.base, self.gate.limits
+        return Welcome(
+            protocol=PROTOCOL,
+            version=__version__,
+            robot=self.model.name,
+            rate=self.rate,
+            links=self.model.arm.links,
+            shoulder=(self.model.mount.s_x, self.model.mount.s_y),
+            mount_yaw=self.model.mount.yaw,
+            footprint=base.footprint,
+            v_max=limits.v_c,
+            w_max=limits.w_c,
+            stop_time=STALE_S + 1.0 / self.rate + max(limits.v_c / limits.dv_c, limits.w_c / limits.dw_c),
+            simulated=True,
+            settings=self.settings,
+        )
+
+    def _report(self, now: float, state: RobotState, gated: Gated, step: Step) -> State:
+        verdict = gated.verdict
+        if verdict in (Verdict.MOVING, Verdict.ACCELERATION) and step.verdict is not Verdict.MOVING:
+            verdict = step.verdict
+        if now - self._told_at >= 1.0:
+            self._told = (self.late.percentile(0.5), self.late.percentile(0.99), self.late.most * 1e6)
+            self._told_at = now
+            self.late.reset()
+        mount, split, polar = self.model.mount, step.split, step.polar
+        x_e, y_e = hand_in_world(
+            state.x_b, state.y_b, state.theta_b, polar.l, polar.psi + mount.yaw, mount.s_x, mount.s_y
+        )
+        blend = self.controller.law.blend
+        return State(
+            now, self._tick, self.gate.latch.operator, self.gate.seq, verdict.value, verdict.sentence,
+            gated.scale * step.scale, self.gate.latch.armed, self.gate.latch.stopped, gated.v_c, gated.w_c,
+            polar.l, polar.psi, polar.theta_e, split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m,
+            state.x_b, state.y_b, state.theta_b, state.theta[0], state.theta[1], x_e, y_e,
+            *self._told, self.overruns, self.gate.refused + self._link.malformed, self._revision,
+            blend.width_l, blend.width_psi,
+        )  # fmt: skip

@@ -1,0 +1,75 @@
+"""The robot side as a process: real-time set-up, signals, and the loop."""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import sys
+from types import FrameType
+
+from overreach.clock import MonotonicClock
+from overreach.errors import SetupError
+from overreach.link.endpoint import check_endpoint
+from overreach.link.robot_end import RobotEnd
+from overreach.loop import Loop
+from overreach.plugs import load_robot
+from overreach.robots.kinematic import KinematicRobot
+
+RATES = (50.0, 1000.0)
+"""Valid loop rates [Hz]."""
+FIFO_PRIORITY = 20
+"""Above ordinary threads, below the kernel's own."""
+PARENT_LOOK_S = 0.1
+
+
+def real_time() -> bool:
+    """Ask for SCHED_FIFO for this thread; say whether it was permitted. Linux only."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
+    except (AttributeError, OSError):
+        return False
+    return True
+
+
+def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -> None:
+    """Run the robot side until SIGINT or SIGTERM or, with `parent`, until that process has ended.
+
+    Raises SetupError or LinkError before anything moves.
+    """
+    if not RATES[0] <= rate <= RATES[1]:
+        raise SetupError(f"--rate must be {RATES[0]:g} to {RATES[1]:g} Hz, got {rate:g}")
+    endpoint = check_endpoint(listen)
+    model = load_robot(robot)
+    clock = MonotonicClock()
+    ended = False
+
+    def end(_signal: int, _frame: FrameType | None) -> None:
+        nonlocal ended
+        ended = True
+
+    signal.signal(signal.SIGINT, end)
+    signal.signal(signal.SIGTERM, end)
+    link = RobotEnd(endpoint)
+    try:
+        loop = Loop(model, KinematicRobot(model, now=clock.now()), link, clock, rate)
+        fifo = real_time()
+        print(
+            f"overreach robot: {model.name} at {endpoint}, {rate:g} Hz"
+            + ("" if fifo else " (no real-time priority)"),
+            file=sys.stderr,
+        )
+        look = clock.now()
+
+        def running() -> bool:
+            nonlocal look
+            if parent is not None and clock.now() >= look:
+                look = clock.now() + PARENT_LOOK_S
+                return os.getppid() == parent and not ended
+            return not ended
+
+        gc.collect()
+        gc.freeze()
+        loop.run(running)
+    finally:
+        link.close()
