@@ -38,7 +38,7 @@ def robot(
     robot: Annotated[str, tyro.conf.Positional] = "planar",
     listen: str = "tcp/127.0.0.1:7460",
     rate: float = 200.0,
-    parent: Annotated[int | None, tyro.conf.Suppress] = None,
+    parent: int | None = None,
 ) -> None:
     """Run the robot side: loop, gate, law and robot. A cockpit connects to it.
 
@@ -46,7 +46,7 @@ def robot(
         robot: Name of the robot (see `overreach robots`).
         listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
         rate: Rate of the control loop [Hz], 50 to 1000.
-        parent: End when this process ends.
+        parent: End when this process, which started this one, ends.
     """
     from overreach.robot_side import run_robot
 

@@ -32,13 +32,18 @@ def real_time() -> bool:
     return True
 
 
+def check_rate(rate: float) -> None:
+    """Raise SetupError unless `rate` [Hz] is one the loop can run at."""
+    if not RATES[0] <= rate <= RATES[1]:
+        raise SetupError(f"--rate must be {RATES[0]:g} to {RATES[1]:g} Hz, got {rate:g}")
+
+
 def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -> None:
     """Run the robot side until SIGINT or SIGTERM or, with `parent`, until that process has ended.
 
     Raises SetupError or LinkError before anything moves.
     """
-    if not RATES[0] <= rate <= RATES[1]:
-        raise SetupError(f"--rate must be {RATES[0]:g} to {RATES[1]:g} Hz, got {rate:g}")
+    check_rate(rate)
     endpoint = check_endpoint(listen)
     model = load_robot(robot)
     clock = MonotonicClock()
@@ -54,11 +59,9 @@ def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -
     try:
         loop = Loop(model, KinematicRobot(model, now=clock.now()), link, clock, rate)
         fifo = real_time()
-        print(
-            f"overreach robot: {model.name} at {endpoint}, {rate:g} Hz"
-            + ("" if fifo else " (no real-time priority)"),
-            file=sys.stderr,
-        )
+        if parent is None:
+            note = "" if fifo else " (no real-time priority: see `overreach doctor`)"
+            print(f"overreach robot: {model.name} listens at {endpoint}, {rate:g} Hz{note}", file=sys.stderr)
         look = clock.now()
 
         def running() -> bool:

@@ -81,8 +81,11 @@ class OperatorEnd:
             return answer
         return Refused("No answer from the robot side.")
 
-    def welcome(self, wait_s: float) -> Welcome:
-        """Say hello until the robot side answers. Raises LinkError after `wait_s` [s], or where it does not fit."""
+    def welcome(self, wait_s: float, ended: Callable[[], bool] = lambda: False) -> Welcome:
+        """Say hello until the robot side answers.
+
+        Raises LinkError after `wait_s` [s], where `ended()` says that it never will, or where it does not fit.
+        """
         until = time.monotonic() + wait_s
         while True:
             answer = self._ask(KEY_HELLO, Hello(PROTOCOL, __version__), 0.5)
@@ -90,9 +93,12 @@ class OperatorEnd:
                 return answer
             if isinstance(answer, Refused):
                 raise LinkError(answer.reason)
+            if ended():
+                raise LinkError("the robot side has ended before it was ready (see above)")
             if time.monotonic() > until:
                 raise LinkError(
-                    f"no robot side answers at {self.endpoint}: start it with `overreach robot --listen {self.endpoint}`"
+                    f"no robot side answers at {self.endpoint}: "
+                    f"start it with `overreach robot --listen {self.endpoint}`"
                 )
             time.sleep(0.02)
 

@@ -1,0 +1,132 @@
+"""`overreach drive` and `overreach cockpit`: processes, ports and the end of everything."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import webbrowser
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from overreach.errors import LinkError, SetupError
+from overreach.link.endpoint import check_endpoint, free_port
+
+USUAL_PORT = 8420
+ROBOT_WAIT_S = 10.0
+END_WAIT_S = 2.0
+
+
+def bind_page(host: str, port: int | None) -> socket.socket:
+    """Return a listening socket for the page; without `port`, USUAL_PORT or else a free one.
+
+    Raises SetupError where the port asked for is taken or not valid, or the host is not this machine's.
+    """
+    if port is not None and not 0 < port < 65536:
+        raise SetupError(f"--port must be 1 to 65535, got {port}")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    for choice in (USUAL_PORT, 0) if port is None else (port,):
+        page = socket.socket(family, socket.SOCK_STREAM)
+        page.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            page.bind((host, choice))
+        except OSError as error:
+            page.close()
+            if choice != USUAL_PORT or port is not None:
+                raise SetupError(
+                    f"the page cannot be served at {host}:{choice} ({error.strerror}): "
+                    "choose another --port, or an address of this machine as --host"
+                ) from None
+        else:
+            return page
+    raise AssertionError("not reached: the last choice returns or raises")
+
+
+def has_browser() -> bool:
+    """Say whether there is a screen with a browser on it."""
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return False
+    try:
+        webbrowser.get()
+    except webbrowser.Error:
+        return False
+    return True
+
+
+def _exit_on_sigterm() -> None:
+    """Make SIGTERM unwind the stack, so that both halves are always closed."""
+
+    def leave(_signal: int, _frame: FrameType | None) -> None:
+        raise SystemExit(143)
+
+    signal.signal(signal.SIGTERM, leave)
+
+
+@contextmanager
+def robot_process(robot: str, rate: float) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """Run the robot side as a process of its own; yield its endpoint and it. It ends with the block."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    command = [sys.executable, "-m", "overreach", "robot", robot, "--listen", endpoint]
+    command += ["--rate", str(rate), "--parent", str(os.getpid())]
+    # A session of its own: Ctrl-C reaches the operator side alone, which then ends this one in order.
+    process = subprocess.Popen(command, start_new_session=True)
+    try:
+        yield endpoint, process
+    finally:
+        process.terminate()
+        try:
+            process.wait(END_WAIT_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def run_drive(robot: str, host: str, port: int | None, rate: float, browser: bool) -> None:
+    """Run both halves until Ctrl-C or SIGTERM, or until one of them ends."""
+    from overreach.plugs import load_robot
+    from overreach.robot_side import check_rate
+
+    load_robot(robot)
+    check_rate(rate)
+    _exit_on_sigterm()
+    with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate) as (endpoint, process):
+        _operate(endpoint, page, host, browser, lambda: process.poll() is not None)
+        if process.poll() is not None:
+            raise LinkError(f"the robot side has ended by itself (exit code {process.returncode}); so has the page")
+
+
+def run_cockpit(connect: str, host: str, port: int | None, browser: bool) -> None:
+    """Run the operator side alone, for a robot side that is already there."""
+    endpoint = check_endpoint(connect)
+    _exit_on_sigterm()
+    with contextlib.closing(bind_page(host, port)) as page:
+        _operate(endpoint, page, host, browser, lambda: False)
+
+
+def _operate(
+    endpoint: str, page: socket.socket, host: str, browser: bool, lost: Callable[[], bool]
+) -> None:
+    # Imported while the robot side starts: the page's library takes the longest.
+    from overreach.cockpit.relay import Relay
+    from overreach.cockpit.server import serve
+    from overreach.link.operator_end import OperatorEnd
+
+    link = OperatorEnd(endpoint)
+    try:
+        relay = Relay(link, link.welcome(ROBOT_WAIT_S, lost))
+        shown = "127.0.0.1" if host in ("0.0.0.0", "::") else host
+        port = page.getsockname()[1]
+        address = f"http://[{shown}]:{port}" if ":" in shown else f"http://{shown}:{port}"
+
+        def ready() -> None:
+            print(f"overreach: drive at {address}   (Ctrl-C ends)", flush=True)
+            if browser and has_browser():
+                webbrowser.open(address)
+
+        serve(relay, page, host, ready, lost)
+    finally:
+        link.close()

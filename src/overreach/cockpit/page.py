@@ -1,0 +1,51 @@
+"""The page: what stands where. What moves on it is drawn by `static/`, from the WebSocket."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+from nicegui import ui
+
+from overreach import __version__
+from overreach.cockpit.relay import Relay
+from overreach.cockpit.settings_panel import SettingsPanel
+
+MARKUP = files("overreach.cockpit").joinpath("static/stage.html")
+
+
+def build_page(relay: Relay) -> None:
+    """Build one visitor's page."""
+    ui.add_head_html(
+        '<meta name="color-scheme" content="light dark">'
+        f'<link rel="stylesheet" href="/static/style.css?v={__version__}">'
+        f'<script type="module" src="/static/main.js?v={__version__}"></script>'
+    )
+    with ui.element("div").props("id=console"):
+        ui.html(MARKUP.read_text("utf-8"), sanitize=False, tag="div").props("id=cockpit")
+        with ui.element("aside").props('id=side aria-label="Plots and settings"'):
+            ui.html(_AUTHORITY, sanitize=False, tag="div")
+            with ui.element("section").classes("card"):
+                ui.html("<h2>Last 20 s</h2>", sanitize=False)
+                ui.echart({}).props('id=plots role=img aria-label="l, psi and the speeds over time"')
+            panel = SettingsPanel(relay)
+    relay.on_settings.add(panel.show)
+    ui.context.client.on_delete(lambda: relay.on_settings.discard(panel.show))
+
+
+_AUTHORITY = """
+<section class="card" id="authority" aria-label="Who moves">
+  <h2>Who moves the hand</h2>
+  <div class="share" data-share="mu">
+    <span class="what">linear</span><span class="sym">μ</span>
+    <span class="bar" role="meter" aria-label="base's share of linear motion" aria-valuemin="0" aria-valuemax="1"
+      aria-valuenow="0"><i></i></span>
+    <b class="who">arm</b><span class="value">0.00</span>
+  </div>
+  <div class="share" data-share="sigma">
+    <span class="what">angular</span><span class="sym">σ</span>
+    <span class="bar" role="meter" aria-label="base's share of angular motion" aria-valuemin="0" aria-valuemax="1"
+      aria-valuenow="0"><i></i></span>
+    <b class="who">arm</b><span class="value">0.00</span>
+  </div>
+</section>
+"""

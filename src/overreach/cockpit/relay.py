@@ -1,0 +1,175 @@
+"""Between the pages and the robot side: sticks and questions up, the newest state down."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import secrets
+from collections.abc import Callable
+from typing import final
+
+import msgspec
+from fastapi import WebSocket, WebSocketDisconnect
+
+from overreach.cockpit import wire
+from overreach.link.messages import (
+    Accepted,
+    Arm,
+    Configure,
+    Disarm,
+    Refused,
+    Request,
+    Reset,
+    Restart,
+    Settings,
+    State,
+    Stop,
+    Welcome,
+)
+from overreach.link.operator_end import OperatorEnd
+from overreach.types import Stick
+
+OPERATOR_BITS = 52
+"""Operator numbers are random and fit into a JavaScript number."""
+
+
+@final
+class Page:
+    """One connected page. Holds only the newest state: a slow page misses states, and delays nobody."""
+
+    def __init__(self, socket: WebSocket) -> None:
+        self.operator = secrets.randbits(OPERATOR_BITS) + 1
+        self.seq = 0
+        self.grip = 0
+        self._socket = socket
+        self._newest: bytes | None = None
+        self._said: list[bytes] = []
+        self._wake = asyncio.Event()
+
+    def show(self, state: bytes) -> None:
+        """Send `state` unless a newer one comes first."""
+        self._newest = state
+        self._wake.set()
+
+    def say(self, message: bytes) -> None:
+        """Send `message` in any case."""
+        self._said.append(message)
+        self._wake.set()
+
+    async def send_forever(self) -> None:
+        """Send what there is to send, until the page is gone."""
+        while True:
+            await self._wake.wait()
+            self._wake.clear()
+            said, self._said = self._said, []
+            newest, self._newest = self._newest, None
+            for message in said:
+                await self._socket.send_text(message.decode())
+            if newest is not None:
+                await self._socket.send_text(newest.decode())
+
+
+@final
+class Relay:
+    """The pages of this cockpit and its one robot side."""
+
+    def __init__(self, link: OperatorEnd, welcome: Welcome) -> None:
+        self.welcome = welcome
+        self.settings = welcome.settings
+        self.on_settings: set[Callable[[Settings], None]] = set()
+        """Called, on the event loop, with settings that have come into force."""
+        self._link = link
+        self._pages: set[Page] = set()
+        self._revision: int | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def start(self) -> None:
+        """Begin to receive states. Call on the event loop."""
+        self._loop = asyncio.get_running_loop()
+        self._link.subscribe(self._from_robot)
+
+    def _from_robot(self, state: State) -> None:
+        """Take a state, on zenoh's thread."""
+        if self._pages and self._loop is not None:
+            message = wire.encode(wire.StateToPage(state))
+            with contextlib.suppress(RuntimeError):  # The event loop has closed: the cockpit is ending.
+                self._loop.call_soon_threadsafe(self._show, message, state.revision)
+
+    def _show(self, message: bytes, revision: int) -> None:
+        for page in self._pages:
+            page.show(message)
+        if revision != self._revision:
+            known, self._revision = self._revision, revision
+            if known is not None:
+                self._spawn(self._refresh())
+
+    def _spawn(self, work: object) -> None:
+        task = asyncio.ensure_future(work)  # type: ignore[call-overload]
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _refresh(self) -> None:
+        """Fetch settings that somebody changed and tell everybody."""
+        welcome = await asyncio.to_thread(self._link.welcome, 1.0)
+        self.settings = welcome.settings
+        for page in self._pages:
+            page.say(wire.encode(wire.SettingsToPage(self.settings)))
+        for told in list(self.on_settings):
+            told(self.settings)
+
+    async def ask(self, request: Request) -> Accepted | Refused:
+        """Ask the robot side, without holding up the pages."""
+        return await asyncio.to_thread(self._link.request, request)
+
+    async def configure(self, settings: Settings) -> Accepted | Refused:
+        """Ask for other settings; every page hears of them when they are in force."""
+        return await self.ask(Configure(settings))
+
+    async def serve(self, socket: WebSocket) -> None:
+        """Talk with one page until it goes; then its robot is let go of."""
+        page = Page(socket)
+        page.say(wire.encode(wire.Greeting(page.operator, self.welcome, self.settings)))
+        self._pages.add(page)
+        sender = asyncio.create_task(page.send_forever())
+        try:
+            while True:
+                await self._take(page, await socket.receive_text())
+        except (WebSocketDisconnect, RuntimeError):
+            pass
+        finally:
+            self._pages.discard(page)
+            sender.cancel()
+            self._link.send(Stick(page.operator, page.seq + 1, page.grip, False, 0.0, 0.0))
+            with contextlib.suppress(Exception, asyncio.CancelledError):
+                await sender
+
+    async def _take(self, page: Page, text: str) -> None:
+        """Pass on one message of a page; what is not understood is dropped, and the page told."""
+        try:
+            if len(text) > wire.LONGEST:
+                raise msgspec.DecodeError("message is too long")
+            message = wire.decode_from_page(text)
+        except msgspec.DecodeError as error:
+            page.say(wire.encode(wire.AnswerToPage(-1, False, f"Not understood: {error}")))
+            return
+        if isinstance(message, wire.StickFromPage):
+            page.seq, page.grip = message.seq, message.grip
+            self._link.send(
+                Stick(page.operator, message.seq, message.grip, message.held, message.v_c, message.w_c)
+            )
+        else:
+            self._spawn(self._answer(page, message))
+
+    async def _answer(self, page: Page, question: wire.AskFromPage) -> None:
+        requests: dict[str, Request] = {
+            "stop": Stop(),
+            "reset": Reset(),
+            "arm": Arm(page.operator),
+            "disarm": Disarm(),
+            "restart": Restart(),
+        }
+        request = requests.get(question.what)
+        answer = await self.ask(request) if request else Refused(f"Unknown button {question.what!r}.")
+        reason = answer.reason if isinstance(answer, Refused) else ""
+        page.say(wire.encode(wire.AnswerToPage(question.id, not reason, reason)))

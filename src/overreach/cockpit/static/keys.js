@@ -1,0 +1,63 @@
+// Arrow keys and W A S D. Shift is a quarter of the speed. A held key is the dead-man.
+
+const WAYS = {
+  ArrowUp: [0, 1], KeyW: [0, 1],
+  ArrowDown: [0, -1], KeyS: [0, -1],
+  ArrowLeft: [-1, 0], KeyA: [-1, 0],
+  ArrowRight: [1, 0], KeyD: [1, 0],
+};
+const SLOW = 0.25;
+
+// A key that a text field or a slider would take for itself is not ours.
+const elsewhere = (target) => target.closest?.("input, textarea, select, [contenteditable], .q-field, .q-slider, [role=slider], [role=listbox]");
+
+export function attachKeys(stick, buttons) {
+  const down = new Set();
+  let slow = false;
+
+  const steer = () => {
+    let x = 0;
+    let y = 0;
+    for (const code of down) {
+      x += WAYS[code][0];
+      y += WAYS[code][1];
+    }
+    const size = Math.max(1, Math.hypot(x, y)) / (slow ? SLOW : 1);
+    return [x / size, y / size];
+  };
+  window.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.code === "Escape") return buttons.stop();
+    if (elsewhere(event.target)) return;
+    if (event.code === "Space") {
+      event.preventDefault();
+      return buttons.stop();
+    }
+    if (event.key === "Shift") {
+      slow = true;
+      if (down.size) stick.move("keys", ...steer());
+    }
+    if (event.repeat) return WAYS[event.code] && event.preventDefault();
+    if (WAYS[event.code]) {
+      event.preventDefault();
+      down.add(event.code);
+      if (stick.holder === "keys") stick.move("keys", ...steer());
+      else stick.press("keys", ...steer());
+    } else if (event.code === "Enter" && event.target.tagName !== "BUTTON") buttons.arm();
+    else if (event.code === "KeyR") buttons.reset();
+    else if (event.code === "KeyF") buttons.follow();
+    else if (event.code === "KeyC") buttons.clear();
+    else if (event.key === "+" || event.key === "=") buttons.zoom(1.25);
+    else if (event.key === "-") buttons.zoom(0.8);
+  });
+  window.addEventListener("keyup", (event) => {
+    if (event.key === "Shift") {
+      slow = false;
+      if (down.size) stick.move("keys", ...steer());
+    }
+    if (!down.delete(event.code)) return;
+    if (down.size) stick.move("keys", ...steer());
+    else stick.release("keys");
+  });
+  for (const event of ["blur", "pagehide"]) window.addEventListener(event, () => down.clear());
+}

@@ -1,0 +1,112 @@
+// Ties the parts of the page together. `window.overreach` is for tests and the curious; nothing depends on it.
+
+import { attachGamepad } from "./gamepad.js";
+import { attachKeys } from "./keys.js";
+import { Link } from "./link.js";
+import { attachPad } from "./pad.js";
+import { Panel } from "./panel.js";
+import { Plots } from "./plots.js";
+import { Stick } from "./stick.js";
+import { toggleTheme } from "./theme.js";
+import { handVelocity, View } from "./view.js";
+
+const SILENT_MS = 500; // without a state for this long, the robot side is not there
+const STOP_AGAIN_MS = 150;
+
+const $ = (id) => document.getElementById(id);
+
+// The page's library builds the page after this module has loaded.
+async function built() {
+  while (!$("view") || !$("plots")) await new Promise((resolve) => setTimeout(resolve, 10));
+}
+
+await built();
+const panel = new Panel();
+const view = new View($("view"));
+const plots = new Plots($("plots"));
+const page = { robot: null, settings: null, state: null, states: 0, heard: performance.now(), drawn: null };
+
+const link = new Link({
+  welcome(robot, settings) {
+    page.robot = robot;
+    stick.most = { v: robot.v_max, w: robot.w_max };
+    panel.welcome(robot);
+    configure(settings);
+  },
+  settings: configure,
+  state(state) {
+    page.state = state;
+    page.states += 1;
+    page.heard = performance.now();
+    view.show(state, page.robot, page.settings);
+    plots.add(state);
+  },
+  up() {
+    page.heard = performance.now();
+  },
+  down() {
+    stick.release();
+    panel.down("The page has lost the cockpit. Trying again.");
+  },
+});
+const stick = new Stick(link);
+
+function configure(settings) {
+  page.settings = settings;
+  plots.configure(settings);
+  view.settings = settings;
+  view.dirty = true;
+}
+
+view.afterDraw.push((state) => {
+  if (!state || !link.ready) return;
+  panel.show(state, Math.hypot(...handVelocity(state, page.robot)));
+  page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
+});
+setInterval(() => {
+  if (link.ready && performance.now() - page.heard > SILENT_MS) panel.down("The robot side is silent.");
+}, 100);
+
+async function ask(what) {
+  const answer = await link.ask(what);
+  if (!answer.done) panel.say("warn", "Not done", answer.reason);
+  return answer;
+}
+const buttons = {
+  // A stop is asked for until the robot side says that it is stopped.
+  async stop() {
+    stick.release();
+    do {
+      await ask("stop");
+      await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
+    } while (link.ready && !page.state?.stopped);
+  },
+  arm: () => ask("arm").then(() => $("pad").focus({ preventScroll: true })),
+  reset: () => ask("reset"),
+  async restart() {
+    if (page.state?.armed) await ask("disarm");
+    for (let k = 0; k < 10; k++) {
+      const answer = await link.ask("restart");
+      if (answer.done) break;
+      await new Promise((resolve) => setTimeout(resolve, 100));
+    }
+    view.clear();
+    view.setFollow(true);
+  },
+  follow: () => view.setFollow(!view.follow),
+  clear: () => view.clear(),
+  zoom: (factor) => view.zoom(factor),
+};
+for (const id of ["stop", "arm", "reset", "restart", "follow", "clear"]) $(id).addEventListener("click", () => buttons[id]());
+$("zoom-in").addEventListener("click", () => view.zoom(1.25));
+$("zoom-out").addEventListener("click", () => view.zoom(0.8));
+$("theme").addEventListener("click", toggleTheme);
+view.onFollow = (on) => $("follow").setAttribute("aria-pressed", on);
+
+attachPad(stick, $("pad"));
+attachKeys(stick, buttons);
+attachGamepad(stick, buttons);
+stick.listeners.push((now) => panel.stick(now));
+
+window.overreach = { page, link, stick, view, plots, buttons };
+document.documentElement.dataset.ready = "true";

@@ -1,0 +1,78 @@
+// What the page says in words and numbers: verdict, authority, readout, and which buttons make sense.
+
+const KINDS = {
+  moving: "go", acceleration: "go", released: "ready", speed: "warn", joint_limit: "warn", singular: "warn", out_of_reach: "warn",
+  beside: "warn", stale: "warn", regrip: "warn", lost: "warn", not_finite: "warn", other_operator: "warn", out_of_order: "warn",
+  disarmed: "down", stopped: "stop",
+};
+const WORDS = {
+  moving: "Moving", acceleration: "Moving", released: "Ready", speed: "Scaled", joint_limit: "Scaled", singular: "Near singular",
+  out_of_reach: "Out of reach", beside: "Scaled", stale: "Link slow", regrip: "Let go", lost: "Link lost", not_finite: "Refused",
+  other_operator: "Refused", out_of_order: "Refused", disarmed: "Disarmed", stopped: "Stopped",
+};
+const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
+
+const $ = (id) => document.getElementById(id);
+const signed = (value, digits = 2) => (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits).replace("-", "−");
+const put = (element, text) => {
+  if (element.textContent !== text) element.textContent = text;
+};
+
+export const authority = (share) => (share <= EDGE ? "arm" : share >= 1 - EDGE ? "base" : "blending");
+
+export class Panel {
+  constructor() {
+    this.shares = [...document.querySelectorAll(".share")].map((row) => ({
+      name: row.dataset.share, bar: row.querySelector(".bar"), fill: row.querySelector("i"),
+      who: row.querySelector(".who"), value: row.querySelector(".value"),
+    }));
+  }
+
+  welcome(robot) {
+    put($("robot"), `${robot.robot} · ${robot.simulated ? "simulated" : "real"} · ${robot.rate} Hz`);
+    put($("r-stop"), `${robot.stop_time.toFixed(2)} s`);
+    $("restart").hidden = !robot.simulated;
+  }
+
+  // `speed`: the hand's true speed [m/s].
+  show(s, speed) {
+    const part = s.scale < 0.995 && ["speed", "acceleration", "joint_limit", "beside"].includes(s.verdict) ? ` (× ${s.scale.toFixed(2)})` : "";
+    this.say(KINDS[s.verdict] ?? "warn", WORDS[s.verdict] ?? s.verdict, s.sentence + part);
+    for (const { name, bar, fill, who, value } of this.shares) {
+      const share = s[name];
+      fill.style.transform = `scaleX(${share})`;
+      bar.setAttribute("aria-valuenow", share.toFixed(2));
+      put(value, share.toFixed(2));
+      const word = authority(share);
+      put(who, word);
+      who.dataset.who = word;
+    }
+    put($("r-hand"), `${signed(s.x_e)}, ${signed(s.y_e)} m`);
+    put($("r-base"), `${signed(s.x_b)}, ${signed(s.y_b)} m  ${signed((s.theta_b * 180) / Math.PI, 0)}°`);
+    put($("r-speed"), `${speed.toFixed(2)} m/s`);
+    put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
+    $("arm").disabled = s.armed || s.stopped;
+    $("reset").disabled = !s.stopped;
+    $("pad").dataset.armed = s.armed;
+    const hint = s.stopped ? "Press Reset, then Arm" : !s.armed ? "Press Arm, then drag" : "";
+    $("pad-hint").hidden = !hint;
+    put($("pad-hint"), hint);
+  }
+
+  say(kind, word, reason) {
+    $("verdict").dataset.kind = kind;
+    put($("verdict-word"), word);
+    put($("verdict-reason"), reason);
+  }
+
+  down(reason) {
+    this.say("stop", "No connection", reason);
+    for (const id of ["arm", "reset"]) $(id).disabled = true;
+    $("pad").dataset.armed = false;
+  }
+
+  stick(stick) {
+    put($("out-v"), signed(stick.v_c));
+    put($("out-w"), signed(stick.w_c));
+  }
+}

@@ -1,0 +1,62 @@
+// One stick from many inputs (pad, keys, gamepad). Whoever took hold last has it, until letting go.
+// Held: a heartbeat, so that silence means loss. Let go: zero, said three times.
+
+const HEARTBEAT_MS = 33;
+
+export class Stick {
+  constructor(link) {
+    this.link = link;
+    this.most = { v: 0.4, w: 0.4 };
+    this.seq = 0;
+    this.grip = 0;
+    this.holder = null;
+    this.x = 0; // right, -1 to 1
+    this.y = 0; // up, -1 to 1
+    this.last = 0;
+    this.listeners = [];
+    setInterval(() => {
+      if (this.held && performance.now() - this.last >= HEARTBEAT_MS - 4) this.say();
+    }, HEARTBEAT_MS / 2);
+    for (const event of ["blur", "pagehide", "offline"]) window.addEventListener(event, () => this.release());
+    document.addEventListener("visibilitychange", () => document.hidden && this.release());
+  }
+
+  get held() {
+    return this.holder !== null;
+  }
+  get v_c() {
+    return this.y * this.most.v;
+  }
+  get w_c() {
+    return -this.x * this.most.w; // left turns counter-clockwise
+  }
+
+  press(holder, x = 0, y = 0) {
+    this.holder = holder;
+    this.grip += 1;
+    this.move(holder, x, y);
+  }
+
+  move(holder, x, y) {
+    if (this.holder !== holder) return;
+    const size = Math.max(1, Math.hypot(x, y));
+    this.x = x / size;
+    this.y = y / size;
+    this.say();
+  }
+
+  release(holder = this.holder) {
+    if (this.holder === null || this.holder !== holder) return;
+    this.holder = null;
+    this.x = this.y = 0;
+    this.say();
+    for (const ms of [20, 60]) setTimeout(() => !this.held && this.say(), ms);
+  }
+
+  say() {
+    this.last = performance.now();
+    this.seq += 1;
+    this.link.send({ type: "stick", seq: this.seq, grip: this.grip, held: this.held, v_c: this.v_c, w_c: this.w_c });
+    for (const listener of this.listeners) listener(this);
+  }
+}

@@ -1,0 +1,369 @@
+// The top view. World x points up and y to the left, as a robot that has just started stands: up on the
+// pad is up on the screen. Drawn only when something has changed.
+
+import { colour, onTheme } from "./theme.js";
+
+const TRAIL_STEP = 0.02; // [m]
+const TRAIL_LENGTH = 6000;
+const NAMES = ["ink", "muted", "line", "grid", "grid-major", "arm", "base", "hand", "space", "band", "panel", "stop"];
+
+export class View {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.paint = canvas.getContext("2d");
+    this.scale = 150; // [px/m]
+    this.centre = { x: 0.3, y: 0 };
+    this.follow = true;
+    this.trails = { hand: [], base: [] };
+    this.dirty = true;
+    this.afterDraw = [];
+    this.colours();
+    onTheme(() => this.colours());
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.attach();
+    const frame = (at) => {
+      this.step(at);
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  colours() {
+    this.c = Object.fromEntries(NAMES.map((name) => [name, colour(name)]));
+    this.dirty = true;
+  }
+
+  resize() {
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.w = this.canvas.clientWidth;
+    this.h = this.canvas.clientHeight;
+    this.canvas.width = Math.round(this.w * ratio);
+    this.canvas.height = Math.round(this.h * ratio);
+    this.ratio = ratio;
+    this.fit ??= this.scale = Math.max(80, Math.min(190, Math.min(this.w / 4.2, this.h / 3.6)));
+    this.dirty = true;
+  }
+
+  show(state, robot, settings) {
+    Object.assign(this, { state, robot, settings });
+    this.trace("hand", state.x_e, state.y_e);
+    this.trace("base", state.x_b, state.y_b);
+    this.dirty = true;
+  }
+
+  trace(name, x, y) {
+    const trail = this.trails[name];
+    const last = trail[trail.length - 1];
+    const step = last ? Math.hypot(x - last[0], y - last[1]) : Infinity;
+    if (step > 1 && last) trail.length = 0; // put somewhere else
+    if (step >= TRAIL_STEP) trail.push([x, y]);
+    if (trail.length > TRAIL_LENGTH) trail.splice(0, TRAIL_LENGTH / 10);
+  }
+
+  clear() {
+    this.trails = { hand: [], base: [] };
+    this.dirty = true;
+  }
+
+  zoom(factor) {
+    this.scale = Math.max(25, Math.min(600, this.scale * factor));
+    this.dirty = true;
+  }
+
+  setFollow(on) {
+    this.follow = on;
+    this.onFollow?.(on);
+    this.dirty = true;
+  }
+
+  attach() {
+    const fingers = new Map();
+    this.canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(-event.deltaY * 0.0015));
+    }, { passive: false });
+    this.canvas.addEventListener("pointerdown", (event) => {
+      fingers.set(event.pointerId, [event.clientX, event.clientY]);
+      this.canvas.setPointerCapture(event.pointerId);
+    });
+    this.canvas.addEventListener("pointermove", (event) => {
+      const was = fingers.get(event.pointerId);
+      if (!was) return;
+      const now = [event.clientX, event.clientY];
+      const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
+      if (other) this.zoom(Math.hypot(now[0] - other[0], now[1] - other[1]) / Math.max(1, Math.hypot(was[0] - other[0], was[1] - other[1])));
+      else if (event.pointerType !== "touch") {
+        if (this.follow) this.setFollow(false);
+        this.canvas.classList.add("dragged");
+        this.centre.y += (now[0] - was[0]) / this.scale;
+        this.centre.x += (now[1] - was[1]) / this.scale;
+        this.dirty = true;
+      }
+      fingers.set(event.pointerId, now);
+    });
+    const lift = (event) => {
+      fingers.delete(event.pointerId);
+      this.canvas.classList.remove("dragged");
+    };
+    this.canvas.addEventListener("pointerup", lift);
+    this.canvas.addEventListener("pointercancel", lift);
+  }
+
+  step(at) {
+    const dt = Math.min(0.1, (at - (this.at ?? at)) / 1000);
+    this.at = at;
+    if (this.follow && this.state) {
+      const s = this.state;
+      // A little below the robot, so that the pad does not cover it.
+      const shift = (this.w > 820 ? 0.34 : 0.02) * (this.h / this.scale) * 0.5;
+      const goal = { x: 0.5 * (s.x_b + s.x_e) - shift, y: 0.5 * (s.y_b + s.y_e) };
+      const part = 1 - Math.exp(-dt / 0.25);
+      const [dx, dy] = [goal.x - this.centre.x, goal.y - this.centre.y];
+      if (Math.hypot(dx, dy) * this.scale > 0.2) {
+        const whole = Math.hypot(dx, dy) > 5;
+        this.centre.x += dx * (whole ? 1 : part);
+        this.centre.y += dy * (whole ? 1 : part);
+        this.dirty = true;
+      }
+    }
+    if (this.dirty && this.w) {
+      this.dirty = false;
+      this.draw();
+      for (const done of this.afterDraw) done(this.state);
+    }
+  }
+
+  px(x, y) {
+    return [this.w / 2 - (y - this.centre.y) * this.scale, this.h / 2 - (x - this.centre.x) * this.scale];
+  }
+
+  draw() {
+    const g = this.paint;
+    g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    g.clearRect(0, 0, this.w, this.h);
+    this.grid();
+    if (!this.state) return;
+    this.trail("base", this.c.base);
+    this.trail("hand", this.c.hand);
+    this.workspace();
+    this.base();
+    this.arm();
+    this.hand();
+  }
+
+  grid() {
+    const g = this.paint;
+    const step = [0.1, 0.25, 0.5, 1, 2, 5, 10].find((one) => one * this.scale >= 34) ?? 10;
+    const line = (from, to) => {
+      g.beginPath();
+      g.moveTo(...from);
+      g.lineTo(...to);
+      g.stroke();
+    };
+    const halfX = this.h / 2 / this.scale;
+    const halfY = this.w / 2 / this.scale;
+    g.lineWidth = 1;
+    for (let k = Math.ceil((this.centre.y - halfY) / step); k * step <= this.centre.y + halfY; k++) {
+      g.strokeStyle = k % 4 === 0 ? this.c["grid-major"] : this.c.grid;
+      const x = Math.round(this.px(0, k * step)[0]) + 0.5;
+      line([x, 0], [x, this.h]);
+    }
+    for (let k = Math.ceil((this.centre.x - halfX) / step); k * step <= this.centre.x + halfX; k++) {
+      g.strokeStyle = k % 4 === 0 ? this.c["grid-major"] : this.c.grid;
+      const y = Math.round(this.px(k * step, 0)[1]) + 0.5;
+      line([0, y], [this.w, y]);
+    }
+    // Where the world begins: x up, y to the left.
+    const [ox, oy] = this.px(0, 0);
+    g.lineWidth = 2;
+    g.fillStyle = g.strokeStyle = this.c.muted;
+    g.font = "11px system-ui, sans-serif";
+    g.textAlign = "center";
+    line([ox, oy], [ox, oy - 26]);
+    line([ox, oy], [ox - 26, oy]);
+    g.fillText("x", ox, oy - 31);
+    g.fillText("y", ox - 33, oy + 4);
+    // Scale.
+    const length = step * 4 * this.scale < this.w / 3 ? step * 4 : step;
+    const [sx, sy] = [16, this.h - 16];
+    g.lineWidth = 2;
+    g.beginPath();
+    g.moveTo(sx, sy - 5);
+    g.lineTo(sx, sy);
+    g.lineTo(sx + length * this.scale, sy);
+    g.lineTo(sx + length * this.scale, sy - 5);
+    g.stroke();
+    g.fillText(`${length} m`, sx + (length * this.scale) / 2, sy - 6);
+  }
+
+  trail(name, ink) {
+    const g = this.paint;
+    const points = this.trails[name];
+    if (points.length < 2) return;
+    g.strokeStyle = ink;
+    g.globalAlpha = 0.55;
+    g.lineWidth = name === "hand" ? 2.5 : 2;
+    g.setLineDash(name === "hand" ? [] : [7, 5]);
+    g.lineJoin = "round";
+    g.beginPath();
+    for (const [x, y] of points) g.lineTo(...this.px(x, y));
+    g.stroke();
+    g.setLineDash([]);
+    g.globalAlpha = 1;
+  }
+
+  shoulder() {
+    const { x_b, y_b, theta_b } = this.state;
+    const [sx, sy] = this.robot.shoulder;
+    const [c, s] = [Math.cos(theta_b), Math.sin(theta_b)];
+    return [x_b + c * sx - s * sy, y_b + s * sx + c * sy];
+  }
+
+  // Sector of an annulus about the shoulder, radii [m], bearings [rad] from the arm's x axis.
+  sector(r0, r1, a0, a1) {
+    const g = this.paint;
+    const [cx, cy] = this.px(...this.shoulder());
+    const turn = -(this.state.theta_b + this.robot.mount_yaw) - Math.PI / 2;
+    g.beginPath();
+    g.arc(cx, cy, Math.max(0, r1) * this.scale, turn - a0, turn - a1, true);
+    g.arc(cx, cy, Math.max(0, r0) * this.scale, turn - a1, turn - a0, false);
+    g.closePath();
+  }
+
+  workspace() {
+    const g = this.paint;
+    const { l_min, l_max, psi_min, psi_max } = this.settings;
+    const [q, p] = [this.state.width_l / 2, this.state.width_psi / 2];
+    g.fillStyle = this.c.space;
+    this.sector(l_min, l_max, psi_min, psi_max);
+    g.fill();
+    g.fillStyle = this.c.band;
+    for (const band of [
+      [l_max - q, l_max + q, psi_min - p, psi_max + p],
+      [l_min - q, l_min + q, psi_min - p, psi_max + p],
+      [l_min + q, l_max - q, psi_max - p, psi_max + p],
+      [l_min + q, l_max - q, psi_min - p, psi_min + p],
+    ]) {
+      if (band[1] <= band[0] || band[3] <= band[2]) continue;
+      this.sector(...band);
+      g.fill();
+    }
+    g.strokeStyle = this.c.arm;
+    g.lineWidth = 1.5;
+    g.setLineDash([5, 4]);
+    this.sector(l_min, l_max, psi_min, psi_max);
+    g.stroke();
+    g.setLineDash([]);
+  }
+
+  base() {
+    const g = this.paint;
+    const { x_b, y_b, theta_b } = this.state;
+    const [length, width] = this.robot.footprint.map((side) => side * this.scale);
+    g.save();
+    g.translate(...this.px(x_b, y_b));
+    g.rotate(-theta_b - Math.PI / 2); // from here on x is the base's x axis, y to its right
+    g.fillStyle = this.c.base;
+    for (const side of [-1, 1]) {
+      g.beginPath();
+      g.roundRect(-length * 0.17, side * width * 0.5 - width * 0.07, length * 0.34, width * 0.14, 3);
+      g.fill();
+    }
+    g.beginPath();
+    g.roundRect(-length / 2, -width / 2, length, width, Math.min(length, width) * 0.18);
+    g.globalAlpha = 0.22;
+    g.fill();
+    g.globalAlpha = 1;
+    g.strokeStyle = this.c.base;
+    g.lineWidth = 2;
+    g.stroke();
+    g.beginPath(); // which way it looks
+    g.moveTo(length * 0.44, 0);
+    g.lineTo(length * 0.31, -width * 0.13);
+    g.lineTo(length * 0.31, width * 0.13);
+    g.closePath();
+    g.fill();
+    g.restore();
+  }
+
+  arm() {
+    const g = this.paint;
+    const { theta_b, theta_1 } = this.state;
+    const from = this.shoulder();
+    const along = theta_b + this.robot.mount_yaw + theta_1;
+    const elbow = [from[0] + this.robot.links[0] * Math.cos(along), from[1] + this.robot.links[0] * Math.sin(along)];
+    const points = [from, elbow, [this.state.x_e, this.state.y_e]].map((point) => this.px(...point));
+    g.lineCap = g.lineJoin = "round";
+    for (const [ink, width] of [[this.c.panel, 13], [this.c.arm, 9]]) {
+      g.strokeStyle = ink;
+      g.lineWidth = Math.max(3, (width * this.scale) / 150);
+      g.beginPath();
+      for (const point of points) g.lineTo(...point);
+      g.stroke();
+    }
+    for (const [x, y] of points.slice(0, 2)) this.disc(x, y, 0.038, this.c.panel, this.c.arm);
+  }
+
+  disc(x, y, radius, fill, stroke) {
+    const g = this.paint;
+    g.beginPath();
+    g.arc(x, y, Math.max(3, radius * this.scale), 0, 2 * Math.PI);
+    g.fillStyle = fill;
+    g.fill();
+    g.strokeStyle = stroke;
+    g.lineWidth = 2.5;
+    g.stroke();
+  }
+
+  // The hand, the way it points, and where it is going.
+  hand() {
+    const g = this.paint;
+    const s = this.state;
+    const [x, y] = this.px(s.x_e, s.y_e);
+    g.save();
+    g.translate(x, y);
+    g.rotate(-s.theta_e - Math.PI / 2);
+    g.strokeStyle = this.c.hand;
+    g.lineWidth = Math.max(2.5, 0.024 * this.scale);
+    g.lineCap = "round";
+    const k = this.scale;
+    g.beginPath();
+    g.moveTo(0.13 * k, -0.055 * k);
+    g.lineTo(0.05 * k, -0.055 * k);
+    g.lineTo(0.05 * k, 0.055 * k);
+    g.lineTo(0.13 * k, 0.055 * k);
+    g.stroke();
+    g.restore();
+    this.disc(x, y, 0.042, this.c.hand, this.c.panel);
+    const [vx, vy] = handVelocity(s, this.robot);
+    const speed = Math.hypot(vx, vy);
+    if (speed > 0.01) {
+      const length = speed * 1.5;
+      const tip = this.px(s.x_e + (vx / speed) * (0.14 + length), s.y_e + (vy / speed) * (0.14 + length));
+      const tail = this.px(s.x_e + (vx / speed) * 0.14, s.y_e + (vy / speed) * 0.14);
+      const way = Math.atan2(tip[1] - tail[1], tip[0] - tail[0]);
+      g.strokeStyle = g.fillStyle = this.c.hand;
+      g.lineWidth = 3;
+      g.beginPath();
+      g.moveTo(...tail);
+      g.lineTo(...tip);
+      g.stroke();
+      g.beginPath();
+      g.moveTo(tip[0] + 7 * Math.cos(way), tip[1] + 7 * Math.sin(way));
+      for (const side of [2.5, -2.5]) g.lineTo(tip[0] + 8 * Math.cos(way + side), tip[1] + 8 * Math.sin(way + side));
+      g.closePath();
+      g.fill();
+    }
+  }
+}
+
+// The hand's true velocity in the world [m/s], from the rates of base and arm.
+export function handVelocity(s, robot) {
+  const bearing = s.theta_b + robot.mount_yaw + s.psi;
+  const [c, n] = [Math.cos(bearing), Math.sin(bearing)];
+  const [px, py] = [s.x_e - s.x_b, s.y_e - s.y_b];
+  return [
+    s.v_b * Math.cos(s.theta_b) - s.w_b * py + s.v_m * c - s.l * s.w_m * n,
+    s.v_b * Math.sin(s.theta_b) + s.w_b * px + s.v_m * n + s.l * s.w_m * c,
+  ];
+}

@@ -1,0 +1,65 @@
+"""What page and cockpit say to each other over the WebSocket: JSON, one typed definition of every message.
+
+The page's own words carry no operator: the cockpit gives each connection its number, and adds it.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from overreach.link.messages import Settings, State, Welcome
+
+LONGEST = 4096
+"""Longest message [bytes] that is taken from a page."""
+
+
+class StickFromPage(msgspec.Struct, frozen=True, tag="stick", forbid_unknown_fields=True):
+    """See `overreach.types.Stick`."""
+
+    seq: int
+    grip: int
+    held: bool
+    v_c: float
+    w_c: float
+
+
+class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=True):
+    """One of the buttons: `what` is stop, reset, arm, disarm or restart; `id` comes back in the answer."""
+
+    id: int
+    what: str
+
+
+FromPage = StickFromPage | AskFromPage
+
+
+class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
+    """First word to a page: its operator number, the robot, and the settings in force."""
+
+    operator: int
+    robot: Welcome
+    settings: Settings
+
+
+class StateToPage(msgspec.Struct, frozen=True, tag="state"):
+    """A state of the robot."""
+
+    state: State
+
+
+class AnswerToPage(msgspec.Struct, frozen=True, tag="answer"):
+    """Whether what was asked for was done, and if not why."""
+
+    id: int
+    done: bool
+    reason: str
+
+
+class SettingsToPage(msgspec.Struct, frozen=True, tag="settings"):
+    """The settings have changed."""
+
+    settings: Settings
+
+
+decode_from_page = msgspec.json.Decoder(FromPage).decode
+encode = msgspec.json.Encoder().encode
