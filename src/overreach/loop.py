@@ -183,7 +183,7 @@ class Loop:
         )
         blend = self.controller.law.blend
         return State(
-            now, self._tick, self.gate.latch.operator, self.gate.seq, verdict.value, verdict.sentence,
+            now, self._tick, self.gate.latch.operator, self.gate.seq, verdict.value, verdict.word, verdict.sentence,
             gated.scale * step.scale, self.gate.latch.armed, self.gate.latch.stopped, gated.v_c, gated.w_c,
             polar.l, polar.psi, polar.theta_e, split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m,
             state.x_b, state.y_b, state.theta_b, state.theta[0], state.theta[1], x_e, y_e,

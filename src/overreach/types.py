@@ -26,32 +26,34 @@ class Frame(enum.StrEnum):
 
 
 class Verdict(enum.StrEnum):
-    """What became of a command in one tick, in the order of precedence, with its sentence."""
+    """What became of a command in one tick, weightiest first: value, a word for a label, what to do or know."""
 
+    word: str
     sentence: str
 
-    def __new__(cls, value: str, sentence: str) -> Verdict:
+    def __new__(cls, value: str, word: str, sentence: str) -> Verdict:
         member = str.__new__(cls, value)
         member._value_ = value
+        member.word = word
         member.sentence = sentence
         return member
 
-    STOPPED = "stopped", "Stopped. Press Reset, then Arm."
-    DISARMED = "disarmed", "Disarmed. Press Arm, then hold the pad."
-    LOST = "lost", "No command for 1 s: disarmed. Let go and press again."
-    REGRIP = "regrip", "Came to rest without commands. Let go and press again."
-    STALE = "stale", "No command for 200 ms: slowing down."
-    NOT_FINITE = "not_finite", "The command held a value that is not finite: refused."
-    OTHER_OPERATOR = "other_operator", "Another operator has armed the robot: refused."
-    OUT_OF_ORDER = "out_of_order", "An old or repeated command came: refused."
-    RELEASED = "released", "Ready. Hold the pad to move the hand."
-    JOINT_LIMIT = "joint_limit", "A joint is near its limit: the whole command is scaled."
-    OUT_OF_REACH = "out_of_reach", "The arm is at the end of its reach."
-    SINGULAR = "singular", "The arm is almost straight or folded: it is slowed there."
-    BESIDE = "beside", "The hand is beside the base, where driving cannot help: scaled."
-    ACCELERATION = "acceleration", "Acceleration limit: the whole command is scaled."
-    SPEED = "speed", "Speed limit: the whole command is scaled."
-    MOVING = "moving", "The hand moves as commanded."
+    STOPPED = "stopped", "Stopped", "Press Reset, then Arm."
+    DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad."
+    LOST = "lost", "Link lost", "No command for 1 s: disarmed. Let go and press again."
+    REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again."
+    STALE = "stale", "Link slow", "No command for 200 ms: slowing down."
+    NOT_FINITE = "not_finite", "Refused", "A command held a value that is not finite."
+    OTHER_OPERATOR = "other_operator", "Refused", "Another operator has armed the robot."
+    OUT_OF_ORDER = "out_of_order", "Refused", "An old or repeated command came."
+    RELEASED = "released", "Ready", "Hold the pad to move the hand."
+    JOINT_LIMIT = "joint_limit", "Scaled", "A joint is near its limit: the whole command is scaled."
+    OUT_OF_REACH = "out_of_reach", "Out of reach", "The arm is at the end of its reach."
+    SINGULAR = "singular", "Damped", "The arm is almost straight or folded: it gives way there."
+    BESIDE = "beside", "Scaled", "The hand is beside the base, where driving cannot help it."
+    SPEED = "speed", "Scaled", "Speed limit: the whole command is scaled."
+    ACCELERATION = "acceleration", "Moving", "Acceleration limit: the whole command is ramped."
+    MOVING = "moving", "Moving", "The hand moves as commanded."
 
 
 class Command(Record, frozen=True):

@@ -122,6 +122,7 @@ class State(msgspec.Struct, frozen=True, gc=False):
     operator: int
     ack: int
     verdict: str
+    word: str
     sentence: str
     scale: float
     armed: bool

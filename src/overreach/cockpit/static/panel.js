@@ -5,11 +5,6 @@ const KINDS = {
   beside: "warn", stale: "warn", regrip: "warn", lost: "warn", not_finite: "warn", other_operator: "warn", out_of_order: "warn",
   disarmed: "down", stopped: "stop",
 };
-const WORDS = {
-  moving: "Moving", acceleration: "Moving", released: "Ready", speed: "Scaled", joint_limit: "Scaled", singular: "Near singular",
-  out_of_reach: "Out of reach", beside: "Scaled", stale: "Link slow", regrip: "Let go", lost: "Link lost", not_finite: "Refused",
-  other_operator: "Refused", out_of_order: "Refused", disarmed: "Disarmed", stopped: "Stopped",
-};
 const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
 
 const $ = (id) => document.getElementById(id);
@@ -37,7 +32,7 @@ export class Panel {
   // `speed`: the hand's true speed [m/s].
   show(s, speed) {
     const part = s.scale < 0.995 && ["speed", "acceleration", "joint_limit", "beside"].includes(s.verdict) ? ` (× ${s.scale.toFixed(2)})` : "";
-    this.say(KINDS[s.verdict] ?? "warn", WORDS[s.verdict] ?? s.verdict, s.sentence + part);
+    this.say(KINDS[s.verdict] ?? "warn", s.word, s.sentence + part);
     for (const { name, bar, fill, who, value } of this.shares) {
       const share = s[name];
       fill.style.transform = `scaleX(${share})`;

@@ -47,9 +47,13 @@ export class Plots {
     this.fresh = false;
   }
 
+  // The page's library makes the chart on our element; until it has, there is none.
   get chart() {
-    const id = this.element.id?.replace(/^c/, "");
-    return this.found ??= findChart(this.element, id);
+    if (!this.library) {
+      this.library = "asked";
+      import("nicegui-echart").then((module) => (this.library = module.echarts));
+    }
+    return this.library === "asked" ? undefined : this.library.getInstanceByDom(this.element);
   }
 
   refresh() {
@@ -76,8 +80,8 @@ export class Plots {
     const pad = plot.pad ?? 0;
     let [min, max] = [Math.min(...wanted) - pad, Math.max(...wanted) + pad];
     if (values.length) [min, max] = [Math.min(min, ...values), Math.max(max, ...values)];
-    const step = max - min > 3 ? 1 : max - min > 1.2 ? 0.5 : 0.2;
-    return { min: Math.floor(min / step + 1e-9) * step, max: Math.ceil(max / step - 1e-9) * step, interval: step * 2 };
+    const step = max - min > 3 ? 1 : max - min > 0.9 ? 0.5 : 0.2;
+    return { min: Math.floor(min / step + 1e-9) * step, max: Math.ceil(max / step - 1e-9) * step, interval: step };
   }
 
   frame() {
@@ -111,10 +115,4 @@ export class Plots {
       }))),
     };
   }
-}
-
-// NiceGUI keeps the chart on its component; before it is mounted there is none.
-function findChart(element) {
-  const component = element.__vueParentComponent?.proxy ?? window.getElement?.(element.id.replace(/^c/, ""));
-  return component?.chart;
 }
