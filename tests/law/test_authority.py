@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from overreach.law import authority
-from overreach.law.blend import Blend, step, tanh
+from overreach.law.blend import Blend, smoothstep, step, tanh
 from overreach.law.laws import Law, exact, paper, switch
 from overreach.law.workspace import Mount
 from tests.strategies import MOUNT_FREE, WORKSPACE, bearings, blends, lengths, limits_of, mounts, speeds
@@ -78,20 +78,32 @@ def test_exact_is_the_closed_form(
     far = math.hypot(*p)
     q = -(p[0] * math.sin(eta) - p[1] * math.cos(eta)) / far**2 + 2.0 * g * eta / far
     mu = blend.rise(l - WORKSPACE.l_max if g > 0.0 else WORKSPACE.l_min - l, blend.k_l)
+    w_l = q * mu * u_r / r[0]
     found = []
     for sign in (1.0, -1.0):
         edge = psi - WORKSPACE.psi_max if sign > 0.0 else WORKSPACE.psi_min - psi
         sigma = blend.rise(edge, blend.k_psi)
-        v_b = (mu * u_r - sigma * u_t * k_r / k_t) / (
-            r[0] + sigma * r[1] * k_r / k_t + (1.0 - sigma) * q * k_r
-        )
+        v_b = (mu * u_r - (1.0 - sigma) * w_l * k_r - sigma * u_t * k_r / k_t) / (r[0] + sigma * r[1] * k_r / k_t)
         d = u_t + v_b * r[1]
-        w_des = (d - k_t * q * v_b) / l
+        w_des = (d - k_t * w_l) / l
         if w_des * sign >= -1e-12:
             w_m = (1.0 - sigma) * w_des
             found.append((v_b, (d - l * w_m) / k_t, (1.0 - mu) * u_r, w_m))
     got = (split.v_b, split.w_b, split.v_m, split.w_m)
     assert any(all(a == pytest.approx(b, abs=1e-9) for a, b in zip(got, one, strict=True)) for one in found)
+
+
+@settings(max_examples=2_000)
+@given(lengths, bearings, speeds, mounts, st.floats(0.05, 0.2), st.sampled_from([tanh(), smoothstep()]))
+def test_exact_is_continuous_where_the_command_turns_back(
+    l: float, psi: float, u_t: float, mount: Mount, speed: float, blend: Blend
+) -> None:
+    """As the command passes from just outward to just inward, the rates do not jump: no chattering there."""
+    law = exact(WORKSPACE, blend, mount)
+    u_t = math.copysign(speed, u_t)
+    one, other = law.split(l, psi, 1e-9, u_t), law.split(l, psi, -1e-9, u_t)
+    for rate in ("v_b", "w_b", "v_m", "w_m"):
+        assert getattr(one, rate) == pytest.approx(getattr(other, rate), abs=1e-6)
 
 
 @settings(max_examples=2_000)
@@ -202,8 +214,6 @@ def test_arm_closes_the_residual_of_any_base_motion(
 @given(bearings, st.sampled_from([-1.0, 1.0]), mounts)
 def test_inside_the_workspace_the_base_stands_still(psi: float, g: float, mount: Mount) -> None:
     """With a blend of compact support the base does not move at all while the hand is well inside."""
-    from overreach.law.blend import smoothstep
-
     split = exact(WORKSPACE, smoothstep(0.1, 0.1), mount).split(0.65, psi * 0.7, g * 0.4, -g * 0.2)
     assert (split.mu, split.sigma, split.v_b, split.w_b) == (0.0, 0.0, 0.0, 0.0)
 

@@ -9,7 +9,7 @@ mount = (s_x, s_y, yaw), and returns (mu, sigma, v_b, w_b, v_m, w_m, scale), as 
 
 from __future__ import annotations
 
-from math import atan2, copysign, cos, pi, sin, sqrt
+from math import atan2, copysign, cos, hypot, pi, sin, sqrt
 
 from overreach.law.blend import Rise
 
@@ -54,7 +54,7 @@ def paper(
     sigma = rise(psi - psi_max, k_psi) if w_c >= 0.0 else rise(psi_min - psi, k_psi)
     drive = mu * u_r
     c = cos(psi + mount[2])
-    speed = sqrt(u_r * u_r + u_t * u_t)
+    speed = hypot(u_r, u_t)
     scale = 1.0
     if abs(drive) > BASE_GAIN * speed * abs(c):
         v_b, scale = scaled_drive(drive, c, speed)
@@ -78,11 +78,12 @@ def exact(
 
     With c = cos psi_d, sn = sin psi_d, psi_d = psi + yaw, and the levers k_r = s_x sn - s_y c,
     k_t = l + s_x c + s_y sn of a base rotation:
-        v_b = (mu u_r - sigma u_t k_r/k_t) / (c + sigma sn k_r/k_t + (1 - sigma) q k_r)
-        w_b = sigma (u_t + v_b sn)/k_t + (1 - sigma) q v_b
+        w_l = q mu u_r / c                                       the base lines up while it drives
+        v_b = (mu u_r - (1 - sigma) w_l k_r - sigma u_t k_r/k_t) / (c + sigma sn k_r/k_t)
+        w_b = sigma (u_t + v_b sn)/k_t + (1 - sigma) w_l
         v_m = u_r - c v_b - k_r w_b,   w_m = (u_t + sn v_b - k_t w_b)/l
-    q [rad/m] lines the base up behind the hand's line of motion while it drives.
-    Source: design of this project (docs/why.md), after the shares of Kwon et al. 2026.
+    q [rad/m] is the turn per metre that brings the base behind the hand's line of motion.
+    Source: this project (docs/why.md), with the shares of Kwon et al. 2026.
     """
     l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
     s_x, s_y, yaw = mount
@@ -94,15 +95,17 @@ def exact(
     lever = k_t if k_t > LEVER_MIN * l else LEVER_MIN * l
 
     mu = rise(l - l_max, k_l) if u_r >= 0.0 else rise(l_min - l, k_l)
-    speed = sqrt(u_r * u_r + u_t * u_t)
-    q = 0.0
-    if mu > 0.0 and speed > 0.0:
+    speed = hypot(u_r, u_t)
+    scale = 1.0
+    v_b = 0.0
+    w_l = 0.0
+    drive = mu * u_r
+    if drive != 0.0:
         # Line up behind the hand. eta is the heading, from the base's, of the hand's line of motion (of u
         # if u_r >= 0, else of -u), y the base's offset to the left of it, L = |p| the hand's distance:
         # q = -y/L^2 + 2 g eta/L. Deviations die out at -|v_b|/l (double), driving and reversing alike.
         g = 1.0 if u_r >= 0.0 else -1.0
-        turn = atan2(g * u_t, g * u_r)
-        eta = psi_d + turn
+        eta = psi_d + atan2(g * u_t, g * u_r)
         if eta > pi or eta < -pi:
             eta -= copysign(2.0 * pi, eta)
         y = g * l * u_t / speed
@@ -110,31 +113,35 @@ def exact(
         if s_x != 0.0 or s_y != 0.0:
             y += s_x * sin(eta) - s_y * cos(eta)
             length_2 = max(2.0 * l * k_t - length_2 + s_x * s_x + s_y * s_y, 0.01 * length_2)
-        q = (2.0 * g * eta * sqrt(length_2) - y) / length_2
+        if abs(drive) > BASE_GAIN * speed * abs(c):
+            v_b, scale = scaled_drive(drive, c, speed)
+        else:
+            v_b = drive / c
+        w_l = v_b * (2.0 * g * eta * sqrt(length_2) - y) / length_2
 
-    # w_des, the arm's bearing rate if the base only lined up, has the same sign for every sigma wherever
-    # driving helps at all: solving the radial balance for sigma = 0 tells it, and nothing is searched.
-    swing = sn - k_t * q
-    lined = c + q * k_r
-    drive = mu * u_r
-    if (u_t * lined + drive * swing) * lined >= 0.0:
+    # sigma goes by the sign of w_des, the bearing rate that is left to the arm if the base only drives and
+    # lines up. That sign is the same for every sigma wherever driving helps at all: nothing is searched.
+    left = u_t * scale - k_t * w_l
+    if left + v_b * sn - w_l * k_r * sn / (c if c != 0.0 else 1.0) >= 0.0:
         sigma = rise(psi - psi_max, k_psi)
     else:
         sigma = rise(psi_min - psi, k_psi)
     if k_r != 0.0:
         ratio = sigma * k_r / lever
-        drive -= u_t * ratio
-        lined += swing * ratio
-    scale = 1.0
-    if abs(drive) > BASE_GAIN * speed * abs(lined):
-        v_b, scale = scaled_drive(drive, lined, speed)
-    else:
-        v_b = drive / lined if drive != 0.0 else 0.0
-    if scale != 1.0:
-        u_r *= scale
-        u_t *= scale
+        drive = v_b * c - (1.0 - sigma) * w_l * k_r - u_t * scale * ratio
+        straight = c + sn * ratio
+        if abs(drive) > BASE_GAIN * speed * abs(straight):
+            v_b, more = scaled_drive(drive, straight, speed)
+            scale *= more
+            w_l *= more
+        elif drive != 0.0:
+            v_b = drive / straight
+        else:
+            v_b = 0.0
+    u_r *= scale
+    u_t *= scale
     d = u_t + v_b * sn
-    w_b = sigma * d / lever + (1.0 - sigma) * q * v_b
+    w_b = sigma * d / lever + (1.0 - sigma) * w_l
     return mu, sigma, v_b, w_b, u_r - c * v_b - k_r * w_b, (d - k_t * w_b) / l, scale
 
 

@@ -1,0 +1,299 @@
+"""All of these begin at a random time that is not 0: a gate that is right only at t = 0 is wrong."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from overreach.errors import SetupError
+from overreach.gate.gate import LOST_S, STALE_S, Gate
+from overreach.gate.limits import Limits
+from overreach.types import Stick, Verdict
+
+DT = 0.005
+ME, OTHER = 11, 22
+LIMITS = Limits()
+RAMP_S = LIMITS.v_c / LIMITS.dv_c
+starts = st.floats(1.0, 1e6)
+
+
+class Bench:
+    """A gate with a clock and an operator who counts."""
+
+    def __init__(self, start: float, operator: int = ME) -> None:
+        self.gate = Gate()
+        self.now = start
+        self.seq = 0
+        self.grip = 0
+        self.operator = operator
+        self.out: list[tuple[float, float]] = []
+
+    def stick(self, held: bool = True, v_c: float = 0.4, w_c: float = 0.0) -> Stick:
+        self.seq += 1
+        return Stick(self.operator, self.seq, self.grip, held, v_c, w_c)
+
+    def press(self) -> None:
+        self.grip += 1
+
+    def tick(self, stick: Stick | None = None) -> Verdict:
+        refusal = self.gate.accept(stick, self.now) if stick else None
+        gated = self.gate.tick(self.now, DT, refusal)
+        self.out.append((gated.v_c, gated.w_c))
+        self.now += DT
+        return gated.verdict
+
+    def drive(self, seconds: float, every: int = 3, v_c: float = 0.4) -> Verdict:
+        verdict = Verdict.DISARMED
+        for k in range(round(seconds / DT)):
+            verdict = self.tick(self.stick(v_c=v_c) if k % every == 0 else None)
+        return verdict
+
+    def silence(self, seconds: float) -> list[Verdict]:
+        return [self.tick() for _ in range(round(seconds / DT))]
+
+    @property
+    def v_c(self) -> float:
+        return self.out[-1][0]
+
+
+def moving(start: float) -> Bench:
+    """Return a bench whose robot is armed and moves at full speed."""
+    bench = Bench(start)
+    bench.gate.arm(ME)
+    bench.press()
+    assert bench.drive(0.5) is Verdict.MOVING
+    assert bench.v_c == 0.4
+    return bench
+
+
+@given(starts)
+def test_disarmed_at_start(start: float) -> None:
+    """A robot that nobody has armed does not move, whatever is sent."""
+    bench = Bench(start)
+    bench.press()
+    assert bench.drive(0.5) is Verdict.DISARMED
+    assert bench.v_c == 0.0
+
+
+@given(starts)
+def test_a_press_from_before_arming_does_not_count(start: float) -> None:
+    """Who holds the dead-man while the robot is armed must let go and press again."""
+    bench = Bench(start)
+    bench.press()
+    bench.drive(0.1)
+    bench.gate.arm(ME)
+    assert bench.drive(0.5) is Verdict.REGRIP
+    assert bench.v_c == 0.0
+    bench.tick(bench.stick(held=False))
+    bench.press()
+    bench.drive(0.5)
+    assert bench.v_c == 0.4
+
+
+@given(starts)
+def test_release_stops_within_the_ramp(start: float) -> None:
+    """Letting go brings the command to zero in v/a, and leaves the robot armed."""
+    bench = moving(start)
+    bench.tick(bench.stick(held=False))
+    assert bench.silence(RAMP_S)[-1] is Verdict.RELEASED
+    assert bench.v_c == 0.0
+    bench.press()
+    bench.drive(0.5)
+    assert bench.v_c == 0.4
+
+
+@settings(max_examples=1_000)
+@given(starts, st.floats(0.0, 1.0), st.integers(0, 40))
+def test_link_lost_at_any_phase(start: float, phase: float, extra: int) -> None:
+    """Whenever the link falls silent, the command is zero within 200 ms + tick + v/a, and 1 s disarms."""
+    bench = Bench(start + phase * DT)
+    bench.gate.arm(ME)
+    bench.press()
+    bench.drive(0.3 + extra * DT)
+    verdicts = bench.silence(STALE_S + DT + RAMP_S)
+    assert bench.v_c == 0.0
+    assert set(verdicts[:-1]) <= {Verdict.MOVING, Verdict.ACCELERATION, Verdict.STALE}
+    assert bench.silence(LOST_S)[-1] is Verdict.LOST
+    # The return of the signal never restarts motion.
+    assert bench.drive(0.5) is Verdict.REGRIP
+    assert bench.v_c == 0.0
+    bench.tick(bench.stick(held=False))
+    bench.press()
+    bench.drive(0.5)
+    assert bench.v_c == 0.4
+
+
+@given(starts)
+def test_a_gap_that_came_to_rest_needs_a_new_press(start: float) -> None:
+    """A signal that returns after the ramp has ended moves nothing until the dead-man is pressed again."""
+    bench = moving(start)
+    bench.silence(STALE_S + DT + RAMP_S + 2 * DT)
+    assert bench.drive(0.3) is Verdict.REGRIP
+    assert bench.v_c == 0.0
+
+
+@given(starts)
+def test_a_short_gap_goes_on(start: float) -> None:
+    """A gap of up to 150 ms is no stop at all; one that ends while still ramping down goes on."""
+    bench = moving(start)
+    assert Verdict.STALE not in bench.silence(0.15)
+    assert bench.v_c == 0.4
+    bench.drive(0.1)
+    bench.silence(STALE_S + 0.05)
+    assert 0.0 < bench.v_c < 0.4
+    assert bench.drive(0.3) is Verdict.MOVING
+    assert bench.v_c == 0.4
+
+
+@given(starts)
+def test_a_backlog_moves_nothing(start: float) -> None:
+    """A sender that was suspended and then sends what it had kept does not restart the robot."""
+    bench = moving(start)
+    kept = [bench.stick() for _ in range(50)]
+    bench.now += 5.0
+    for stick in kept:
+        bench.gate.accept(stick, bench.now)
+    for _ in range(200):
+        bench.tick(bench.stick())
+    assert bench.v_c == 0.0
+
+
+@given(starts, st.randoms(use_true_random=False))
+def test_order(start: float, chance: random.Random) -> None:
+    """A stream with repeats and old messages gives the same output as its sorted, unique self."""
+    clean, dirty = moving(start), moving(start)
+    for k in range(100):
+        speed = chance.uniform(-0.4, 0.4)
+        stick = clean.stick(v_c=speed)
+        dirty.seq = clean.seq
+        clean.tick(stick)
+        dirty.gate.accept(stick, dirty.now)
+        old = Stick(ME, chance.randint(1, stick.seq), stick.grip, True, 0.4, 0.4)
+        assert dirty.gate.accept(old, dirty.now) is Verdict.OUT_OF_ORDER
+        dirty.tick()
+        assert k >= 0
+    assert clean.out[-100:] == dirty.out[-100:]
+    assert dirty.gate.refused == 100
+
+
+@given(starts, st.sampled_from([math.nan, math.inf, -math.inf]), st.booleans())
+def test_not_finite_is_refused(start: float, bad: float, second: bool) -> None:
+    """A command that is not finite is refused and told of; it does not count as fresh; output stays finite."""
+    bench = moving(start)
+    verdicts = []
+    for _ in range(round((STALE_S + RAMP_S) / DT) + 4):
+        verdicts.append(bench.tick(bench.stick(v_c=0.4 if second else bad, w_c=bad if second else 0.0)))
+    assert set(verdicts) == {Verdict.NOT_FINITE}
+    assert bench.v_c == 0.0
+    assert all(math.isfinite(value) for pair in bench.out for value in pair)
+
+
+@given(starts)
+def test_only_who_armed_drives(start: float) -> None:
+    """Another operator's stick is refused; when he arms, the robot first comes to rest; the first is then refused."""
+    bench = moving(start)
+    other = Stick(OTHER, 1, 1, True, -0.4, 0.0)
+    assert bench.gate.accept(other, bench.now) is Verdict.OTHER_OPERATOR
+    bench.gate.arm(OTHER)
+    assert bench.gate.accept(bench.stick(), bench.now) is Verdict.OTHER_OPERATOR
+    bench.silence(RAMP_S + DT)
+    assert bench.v_c == 0.0
+    for k in range(2, 100):
+        bench.tick(Stick(OTHER, k, 1, True, -0.4, 0.0))
+    assert bench.v_c == -0.4
+
+
+@settings(max_examples=300)
+@given(starts, st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.booleans()), min_size=5, max_size=60))
+def test_a_jump_is_a_ramp(start: float, wishes: list[tuple[float, float, bool]]) -> None:
+    """Whatever is asked for, the command changes by at most a_max dt a tick and never passes its limits."""
+    bench = Bench(start)
+    bench.gate.arm(ME)
+    bench.press()
+    for v_c, w_c, held in wishes:
+        bench.tick(bench.stick(held, v_c, w_c))
+    for (v0, w0), (v1, w1) in itertools.pairwise([(0.0, 0.0), *bench.out]):
+        assert abs(v1 - v0) <= LIMITS.dv_c * DT * (1 + 1e-8)
+        assert abs(w1 - w0) <= LIMITS.dw_c * DT * (1 + 1e-8)
+        assert abs(v1) <= LIMITS.v_c * (1 + 1e-8)
+        assert abs(w1) <= LIMITS.w_c * (1 + 1e-8)
+
+
+def test_no_way_from_stopped_to_moving_but_reset_arm_release_press() -> None:
+    """Of all sequences of up to 6 acts after a stop, only those with reset, arm and a new press, in order, move."""
+    acts = ("reset", "arm", "press", "release", "disarm", "stop")
+    moved = 0
+    for length in range(1, 7):
+        for sequence in itertools.product(acts, repeat=length):
+            bench = Bench(start=123.456 + length)
+            bench.gate.arm(ME)
+            bench.press()
+            bench.tick(bench.stick())
+            bench.gate.latch.stop()
+            held = True
+            may = "stopped"
+            for act in sequence:
+                if act == "reset":
+                    bench.gate.latch.reset()
+                    may = "reset"
+                elif act == "arm":
+                    bench.gate.arm(ME)
+                    may = "armed" if may in ("reset", "armed", "moving") else may
+                elif act == "press":
+                    held = True
+                    bench.press()
+                    may = "moving" if may in ("armed", "moving") else may
+                elif act == "release":
+                    held = False
+                    may = "armed" if may == "moving" else may
+                elif act == "disarm":
+                    bench.gate.latch.disarm()
+                    may = "reset" if may in ("armed", "moving") else may
+                else:
+                    bench.gate.latch.stop()
+                    may = "stopped"
+                bench.tick(bench.stick(held))
+            for _ in range(40):  # what was still ramping down has come to rest
+                bench.tick(bench.stick(held))
+            went = bench.v_c != 0.0
+            assert not went or may == "moving", sequence
+            moved += went
+    assert moved > 100
+
+
+@given(starts)
+def test_stop_is_latched(start: float) -> None:
+    """A stop brings the command to zero, arming does not lift it, reset lifts it and moves nothing."""
+    bench = moving(start)
+    bench.gate.latch.stop()
+    assert bench.drive(RAMP_S + DT) is Verdict.STOPPED
+    assert bench.v_c == 0.0
+    assert not bench.gate.arm(ME)
+    assert bench.drive(0.3) is Verdict.STOPPED
+    bench.gate.latch.reset()
+    assert bench.drive(0.3) is Verdict.DISARMED
+    assert bench.v_c == 0.0
+
+
+@given(starts, st.floats(0.05, 1.0))
+def test_speed_scale_scales_the_whole_command(start: float, scale: float) -> None:
+    """The speed scale shrinks both parts of the command alike."""
+    bench = Bench(start)
+    bench.gate.set_speed_scale(scale)
+    bench.gate.arm(ME)
+    bench.press()
+    for _ in range(200):
+        bench.tick(bench.stick(v_c=0.4, w_c=-0.2))
+    assert bench.out[-1] == pytest.approx((0.4 * scale, -0.2 * scale))
+
+
+@pytest.mark.parametrize("bad", [0.0, -0.5, 1.01, math.nan])
+def test_speed_scale_is_checked(bad: float) -> None:
+    """A speed scale that would stop, reverse or speed up the robot is refused."""
+    with pytest.raises(SetupError, match="speed scale"):
+        Gate().set_speed_scale(bad)
