@@ -62,13 +62,12 @@ class HandController:
 
     def configure(self, law: Law, frame: Frame | None = None) -> None:
         """Change the law and the command frame; the hand's heading starts anew at its bearing."""
-        if frame is None:
-            frame = law.frame
-        if getattr(self, "frame", None) is not frame:
+        chosen = frame or law.frame
+        if getattr(self, "frame", None) is not chosen:
             self._theta_e = None
         self.law = law
-        self.frame = frame
-        self._to_polar = FRAMES[frame]
+        self.frame: Frame = chosen
+        self._to_polar = FRAMES[chosen]
         mount = law.mount
         self._mount = (mount.s_x, mount.s_y, mount.yaw)
 
@@ -79,8 +78,8 @@ class HandController:
 
     def locate(self, state: RobotState) -> PolarState:
         """Return where the hand is, seen from the shoulder, and its heading."""
-        arm = self.model.arm
-        l, psi = forward(*state.theta, *arm.links)
+        theta_1, theta_2 = state.theta
+        l, psi = forward(theta_1, theta_2, *self.model.arm.links)
         psi = wrap(psi)
         bearing = state.theta_b + psi + self._mount[2]
         if self._theta_e is None or heading_rate(self.frame, 0.0) is None:
@@ -159,10 +158,11 @@ class HandController:
         """Return joint rates, the polar rates that they give, and what kept them from what was asked."""
         arm = self.model.arm
         if self._whole_steps:
-            one, two, verdict = joint_rates_over(*state.theta, v_m, w_m, dt, *arm.links, arm.elbow)
+            theta_1, theta_2 = state.theta
+            one, two, verdict = joint_rates_over(theta_1, theta_2, v_m, w_m, dt, *arm.links, arm.elbow)
             if verdict is not Verdict.MOVING:
-                now, _ = forward(*state.theta, *arm.links)
-                then, _ = forward(state.theta[0] + one * dt, state.theta[1] + two * dt, *arm.links)
+                now, _ = forward(theta_1, theta_2, *arm.links)
+                then, _ = forward(theta_1 + one * dt, theta_2 + two * dt, *arm.links)
                 v_m = (then - now) / dt
         else:
             one, two, damped = polar_to_joint_rates(state.theta[1], v_m, w_m, *arm.links, arm.elbow)

@@ -59,9 +59,7 @@ class Loop:
         self._link = link
         self._clock = clock
         space = model.workspace
-        self.settings = Settings(
-            l_min=space.l_min, l_max=space.l_max, psi_min=space.psi_min, psi_max=space.psi_max
-        )
+        self.settings = Settings(l_min=space.l_min, l_max=space.l_max, psi_min=space.psi_min, psi_max=space.psi_max)
         self.controller = HandController(model, self._law(self.settings), Frame(self.settings.frame))
         self._revision = 0
         self._tick = 0

@@ -32,6 +32,7 @@ class Verdict(enum.StrEnum):
     sentence: str
 
     def __new__(cls, value: str, word: str, sentence: str) -> Verdict:
+        """Make a member whose value is `value`."""
         member = str.__new__(cls, value)
         member._value_ = value
         member.word = word

@@ -5,6 +5,7 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.strategies import angles
 
 from overreach.arm.limits import fastest_towards
 from overreach.arm.planar import (
@@ -19,7 +20,6 @@ from overreach.arm.planar import (
     wrap,
 )
 from overreach.types import Verdict
-from tests.strategies import angles
 
 links = st.floats(0.1, 1.5)
 elbows = st.sampled_from([-1, 1])
@@ -104,7 +104,7 @@ def test_backing_out_of_a_singularity_is_possible(theta_2: float, back: float) -
     _, two, _ = polar_to_joint_rates(theta_2, back, 0.0, 0.5, 0.4, 1)
     assert abs(two) > 0.1
     for _ in range(400):
-        one, two, _ = polar_to_joint_rates(theta_2, back, 0.0, 0.5, 0.4, 1)
+        _, two, _ = polar_to_joint_rates(theta_2, back, 0.0, 0.5, 0.4, 1)
         theta_2 += two * 0.005
     assert abs(math.sin(theta_2)) > SINE_DAMPED
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.special import wrightomega
+from tests.strategies import angles, bearings, speeds
 
 from overreach.arm.planar import hand_in_world, inverse
 from overreach.control import HandController
@@ -22,7 +23,6 @@ from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import BaseTwist, Frame, RobotState
-from tests.strategies import angles, bearings, speeds
 
 V = 0.4
 
@@ -93,9 +93,7 @@ def test_the_hand_moves_as_commanded_in_the_world(
     """Over one step of 1 ms of the moving robot, the hand's mean world velocity is the commanded one, to 1e-3 m/s."""
     dt = 1e-3
     model = PlanarRobot(mount=mount)
-    controller = HandController(
-        model, exact(Workspace(), tanh(), mount), Frame.HAND, limited=False, whole_steps=True
-    )
+    controller = HandController(model, exact(Workspace(), tanh(), mount), Frame.HAND, limited=False, whole_steps=True)
     theta = inverse(l, psi, 0.5, 0.5, 1)
     state = RobotState(0.0, 0.3, -0.2, theta_b, 0.0, 0.0, theta, (0.0, 0.0))
     heading = controller.locate(state).theta_e + turned
@@ -127,9 +125,7 @@ def test_straight_stays_straight(v_c: float) -> None:
     """Pushed straight with the arm 0.4 rad aside, the hand of `exact` draws a straight line; `paper`'s turns off it."""
     text = constant(v_c, 0.0, 20.0, "[robot]\npsi = 0.4")
     rows = run(text).rows
-    away = max(
-        abs((row.y_e - rows[0].y_e) * math.cos(0.4) - (row.x_e - rows[0].x_e) * math.sin(0.4)) for row in rows
-    )
+    away = max(abs((row.y_e - rows[0].y_e) * math.cos(0.4) - (row.x_e - rows[0].x_e) * math.sin(0.4)) for row in rows)
     assert away <= 2e-4
     assert abs(rows[-1].psi) < 2e-3
     rows = run(text, "paper").rows
@@ -164,7 +160,10 @@ def test_base_lines_up_at_the_rate_of_the_eigenvalues(v_c: float, matrix: list[l
 def test_base_ends_behind_the_hand(v_c: float, shoulder: tuple[float, float], yaw: float) -> None:
     """Wherever the shoulder is, the base ends on the hand's line, heading along it, driving and reversing."""
     text = constant(
-        v_c, 0.0, 40.0, f'[robot]\npsi = 0.3\nshoulder = {list(shoulder)}\nmount_yaw = {yaw}\n[law]\nblend = "smoothstep"'
+        v_c,
+        0.0,
+        40.0,
+        f'[robot]\npsi = 0.3\nshoulder = {list(shoulder)}\nmount_yaw = {yaw}\n[law]\nblend = "smoothstep"',
     )
     last = run(text).rows[-1]
     assert last.theta_b == pytest.approx(0.3 + yaw, abs=2e-3)
@@ -235,9 +234,7 @@ def test_arm_makes_up_for_a_base_that_does_otherwise() -> None:
     state = RobotState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta, (0.0, 0.0))
     first = controller.step(state, V, 0.0, 0.005)
     slip = BaseTwist(-0.1, 0.05)
-    real = RobotState(
-        0.0, 0.0, 0.0, 0.0, first.split.v_b + slip.v_b, first.split.w_b + slip.w_b, theta, first.dtheta
-    )
+    real = RobotState(0.0, 0.0, 0.0, 0.0, first.split.v_b + slip.v_b, first.split.w_b + slip.w_b, theta, first.dtheta)
     second = controller.step(real, V, 0.0, 0.005)
     twist = BaseTwist(second.split.v_b + slip.v_b, second.split.w_b + slip.w_b)
     h = 1e-6

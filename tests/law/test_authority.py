@@ -5,12 +5,12 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.strategies import MOUNT_FREE, WORKSPACE, bearings, blends, lengths, limits_of, mounts, speeds
 
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep, step, tanh
 from overreach.law.laws import Law, exact, paper, switch
 from overreach.law.workspace import Mount
-from tests.strategies import MOUNT_FREE, WORKSPACE, bearings, blends, lengths, limits_of, mounts, speeds
 
 TINY = 1e-12
 
@@ -60,9 +60,7 @@ def test_exact_gives_the_base_the_papers_shares(l: float, psi: float, u_r: float
 
 @settings(max_examples=2_000)
 @given(lengths, bearings, speeds, speeds, blends, mounts)
-def test_exact_is_the_closed_form(
-    l: float, psi: float, u_r: float, u_t: float, blend: Blend, mount: Mount
-) -> None:
+def test_exact_is_the_closed_form(l: float, psi: float, u_r: float, u_t: float, blend: Blend, mount: Mount) -> None:
     """`exact` equals the equations of the design, written out by vectors and solved by trying both signs."""
     split = exact(WORKSPACE, blend, mount).split(l, psi, u_r, u_t)
     if split.scale < 1.0 or math.hypot(u_r, u_t) < 1e-6:
@@ -132,9 +130,7 @@ def test_exact_is_the_same_in_a_mirror(l: float, psi: float, u_r: float, u_t: fl
 
 @settings(max_examples=2_000)
 @given(lengths, bearings, speeds, speeds, blends)
-def test_paper_distorts_by_the_drives_sideways_part(
-    l: float, psi: float, v_c: float, w_c: float, blend: Blend
-) -> None:
+def test_paper_distorts_by_the_drives_sideways_part(l: float, psi: float, v_c: float, w_c: float, blend: Blend) -> None:
     """With `paper` the EE leaves its command by mu |v_c tan psi|, all of it sideways."""
     split = paper(WORKSPACE, blend).split(l, psi, v_c, l * w_c)
     got = rigid_body_velocity(l, psi, MOUNT_FREE, (split.v_b, split.w_b, split.v_m, split.w_m))
@@ -174,9 +170,7 @@ def test_narrow_tanh_is_the_switch(l: float, psi: float, v_c: float, w_c: float)
     st.floats(-1e6, 1e6),
     st.floats(-1e6, 1e6),
 )
-def test_rates_are_finite_and_bounded_everywhere(
-    law: Law, l: float, psi: float, u_r: float, u_t: float
-) -> None:
+def test_rates_are_finite_and_bounded_everywhere(law: Law, l: float, psi: float, u_r: float, u_t: float) -> None:
     """Beside the base, behind it, anywhere: rates stay finite, the base's speed bounded, scale in [0, 1]."""
     split = law.split(l, psi, u_r, u_t)
     rates = (split.v_b, split.w_b, split.v_m, split.w_m)

@@ -21,9 +21,7 @@ def fastest_towards(
     return min(speed, sqrt(2.0 * braking * ahead), ahead / dt)
 
 
-def fastest_joints(
-    arm: Arm2R, theta: tuple[float, ...], dtheta: tuple[float, ...], dt: float
-) -> tuple[float, ...]:
+def fastest_joints(arm: Arm2R, theta: tuple[float, ...], dtheta: tuple[float, ...], dt: float) -> tuple[float, ...]:
     """Return `fastest_towards` for every joint of `arm`."""
     return tuple(
         fastest_towards(angle, rate, least, most, speed, 0.5 * braking, dt)

@@ -86,8 +86,7 @@ def joint_rates(
     way smoothly) and motion away from it is bounded but not blocked, so that backing out is always
     possible. Never infinite.
     """
-    if l < L_LEAST:
-        l = L_LEAST
+    l = max(l, L_LEAST)
     damped = False
     if -SINE_DAMPED < s2 < SINE_DAMPED:
         damped = v_m != 0.0

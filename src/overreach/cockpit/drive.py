@@ -107,9 +107,7 @@ def run_cockpit(connect: str, host: str, port: int | None, browser: bool) -> Non
         _operate(endpoint, page, host, browser, lambda: False)
 
 
-def _operate(
-    endpoint: str, page: socket.socket, host: str, browser: bool, lost: Callable[[], bool]
-) -> None:
+def _operate(endpoint: str, page: socket.socket, host: str, browser: bool, lost: Callable[[], bool]) -> None:
     # Imported while the robot side starts: the page's library takes the longest.
     from overreach.cockpit.relay import Relay
     from overreach.cockpit.server import serve

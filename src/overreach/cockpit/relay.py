@@ -155,9 +155,7 @@ class Relay:
             return
         if isinstance(message, wire.StickFromPage):
             page.seq, page.grip = message.seq, message.grip
-            self._link.send(
-                Stick(page.operator, message.seq, message.grip, message.held, message.v_c, message.w_c)
-            )
+            self._link.send(Stick(page.operator, message.seq, message.grip, message.held, message.v_c, message.w_c))
         else:
             self._spawn(self._answer(page, message))
 

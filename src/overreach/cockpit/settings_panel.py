@@ -49,9 +49,9 @@ class SettingsPanel:
         self.show(relay.settings)
 
     def _select(self, field: str, label: str, options: list[str]) -> ui.select:
-        return ui.select(
-            options, label=label, value=getattr(self._shown, field), on_change=self._handler(field)
-        ).props(f'outlined dense options-dense id="set-{field}"')
+        return ui.select(options, label=label, value=getattr(self._shown, field), on_change=self._handler(field)).props(
+            f'outlined dense options-dense id="set-{field}"'
+        )
 
     def _line(self, label: str, unit: str) -> ui.label:
         with ui.element("div").classes("line"):
@@ -68,12 +68,13 @@ class SettingsPanel:
         slider.on("update:model-value", lambda: self._ask({field: slider.value}), throttle=THROTTLE_S)
         return slider
 
-    def _range(
-        self, low: str, high: str, label: str, least: float, most: float, step: float, unit: str
-    ) -> ui.range:
+    def _range(self, low: str, high: str, label: str, least: float, most: float, step: float, unit: str) -> ui.range:
         value = self._line(label, unit)
         both = ui.range(
-            min=least, max=most, step=step, value={"min": getattr(self._shown, low), "max": getattr(self._shown, high)}
+            min=least,
+            max=most,
+            step=step,
+            value={"min": getattr(self._shown, low), "max": getattr(self._shown, high)},
         )
         both.props(f'id="set-{low}" aria-label="{label}"')
         value.bind_text_from(both, "value", backward=lambda pair: f"{pair['min']:g} to {pair['max']:g}")

@@ -1,0 +1,1 @@
+"""Scenarios, headless runs and what they show."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
@@ -48,7 +49,7 @@ def authority_changes(rows: Sequence[Row]) -> int:
     count = 0
     for share, command in (("mu", "v_c"), ("sigma", "w_c")):
         sides = [getattr(row, share) > 0.5 for row in rows if getattr(row, command) != 0.0]
-        count += sum(a != b for a, b in zip(sides, sides[1:], strict=False))
+        count += sum(a != b for a, b in pairwise(sides))
     return count
 
 
@@ -75,9 +76,7 @@ def summarise(
         duration=len(rows) * dt,
         ee_error_rms=sqrt(sum(e * e for e in size) / len(size)),
         ee_error_max=max(size),
-        hand_travel=sum(
-            hypot(b.x_e - a.x_e, b.y_e - a.y_e) for a, b in zip(rows, rows[1:], strict=False)
-        ),
+        hand_travel=sum(hypot(b.x_e - a.x_e, b.y_e - a.y_e) for a, b in pairwise(rows)),
         base_travel=sum(abs(row.v_b) for row in rows) * dt,
         base_turn=sum(abs(row.w_b) for row in rows) * dt,
         outside_s=sum(a > 0.0 or b > 0.0 for a, b in zip(beyond_l, beyond_psi, strict=True)) * dt,

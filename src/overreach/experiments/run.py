@@ -82,14 +82,16 @@ def steps(scenario: Scenario, law: str = "exact") -> Iterator[tuple[Row, tuple[f
         robot.write(done.twist, done.dtheta, t)
         # What was asked for and what really happens, both seen where the hand truly is.
         true = robot.true
-        l, psi = forward(*true.theta, *model.arm.links)
+        theta_1, theta_2 = true.theta
+        l, psi = forward(theta_1, theta_2, *model.arm.links)
         psi = wrap(psi)
         theta_e = done.polar.theta_e
         split = done.split
         if scenario.imperfection.ideal:
             v_m, w_m = split.v_m, split.w_m
         else:
-            v_m, w_m = polar_rates(true.theta[1], *true.dtheta, *model.arm.links)
+            dtheta_1, dtheta_2 = true.dtheta
+            v_m, w_m = polar_rates(theta_2, dtheta_1, dtheta_2, *model.arm.links)
         u_r, u_t = controller.commanded(v_c, w_c, l, psi, true.theta_b, theta_e)
         e_r, e_t = ee_velocity(l, psi, true.v_b, true.w_b, v_m, w_m, mount)
         psi_d = psi + model.mount.yaw

@@ -1,11 +1,11 @@
 """What a scenario file may say. TOML in, a checked `Scenario` out; every error is one line.
 
-    [robot]      name = "planar", l = 0.65, psi = 0.0, shoulder = [0.0, 0.0], mount_yaw = 0.0,
-                 delay_s, lag_s, noise, seed (of the actuators and encoders; all 0)
-    [workspace]  l_min, l_max, psi_min, psi_max
-    [law]        blend = "tanh"|"smoothstep"|"step", alpha, beta (tanh), q_l, q_psi (smoothstep)
-    [command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
-    [limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, so that the law is seen
+[robot]      name = "planar", l = 0.65, psi = 0.0, shoulder = [0.0, 0.0], mount_yaw = 0.0,
+             delay_s, lag_s, noise, seed (of the actuators and encoders; all 0)
+[workspace]  l_min, l_max, psi_min, psi_max
+[law]        blend = "tanh"|"smoothstep"|"step", alpha, beta (tanh), q_l, q_psi (smoothstep)
+[command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
+[limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, so that the law is seen
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import importlib.resources
 import math
 import os
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -186,9 +187,7 @@ def _check_keys(table: dict[str, Any], struct: type[msgspec.Struct], where: str,
         path = f"{where}.{key}" if where else key
         if key not in struct.__struct_fields__:
             place = f"in [{where}]" if where else "at the top"
-            raise ScenarioError(
-                f"scenario {name!r}: {UnknownNameError(f'key {place}', key, struct.__struct_fields__)}"
-            )
+            raise ScenarioError(f"scenario {name!r}: {UnknownNameError(f'key {place}', key, struct.__struct_fields__)}")
         inner = _TABLES.get(path)
         if inner is not None:
             for entry in value if isinstance(value, list) else [value]:
@@ -231,7 +230,7 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
         segments = _read_commands(folder / command.file, name)
     else:
         segments = command.segments or ()
-    if any(later.t <= earlier.t for earlier, later in zip(segments, segments[1:], strict=False)):
+    if any(later.t <= earlier.t for earlier, later in pairwise(segments)):
         raise ScenarioError(f"scenario {name!r}: the times t of the commands must increase from row to row")
 
     given = load_robot(robot.name)

@@ -1,0 +1,1 @@
+"""What may pass to the robot: pure functions of (state, input, now)."""

@@ -38,9 +38,7 @@ def limit_speed(v_c: float, w_c: float, limits: Limits) -> tuple[float, float, f
     return v_c / worst, w_c / worst, 1.0 / worst
 
 
-def slew(
-    now: tuple[float, float], goal: tuple[float, float], limits: Limits, dt: float
-) -> tuple[float, float, bool]:
+def slew(now: tuple[float, float], goal: tuple[float, float], limits: Limits, dt: float) -> tuple[float, float, bool]:
     """Return (v_c, w_c, limited): the command moved from `now` towards `goal`, straight, for `dt` [s].
 
     Both parts take the same fraction of the way, so that a ramp to zero keeps the direction.

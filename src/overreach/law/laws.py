@@ -91,13 +91,27 @@ class SharingLaw:
 def exact(workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None) -> Law:
     """Ours: exact in true kinematics, the arm closes what the base leaves, the base lines up."""
     return SharingLaw(
-        "exact", Frame.HAND, True, authority.exact, workspace or Workspace(), blend or smoothstep(), mount or Mount()
+        "exact",
+        Frame.HAND,
+        True,
+        authority.exact,
+        workspace or Workspace(),
+        blend or smoothstep(),
+        mount or Mount(),
     )
 
 
 def paper(workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None) -> Law:
     """Kwon et al. 2026, (14) to (16), to the letter: distorts the hand's motion by mu |v_c tan psi|."""
-    return SharingLaw("paper", Frame.POLAR, False, authority.paper, workspace or Workspace(), blend or tanh(), mount or Mount())
+    return SharingLaw(
+        "paper",
+        Frame.POLAR,
+        False,
+        authority.paper,
+        workspace or Workspace(),
+        blend or tanh(),
+        mount or Mount(),
+    )
 
 
 def switch(workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None) -> Law:

@@ -1,0 +1,1 @@
+"""Between the two halves: commands up, state down, latest wins."""

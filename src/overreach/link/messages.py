@@ -1,10 +1,10 @@
 """Every message between the two halves, defined once. MessagePack on the wire; units as in `types`.
 
-    operator side                         robot side
-        Stick  ---- overreach/stick ------->   latest wins
-        Request --- overreach/request ----->   each answered: Accepted or Refused
-        Hello ----- overreach/hello ------->   answered: Welcome or Refused
-              <---- overreach/state --------   State, latest wins
+operator side                         robot side
+    Stick  ---- overreach/stick ------->   latest wins
+    Request --- overreach/request ----->   each answered: Accepted or Refused
+    Hello ----- overreach/hello ------->   answered: Welcome or Refused
+          <---- overreach/state --------   State, latest wins
 """
 
 from __future__ import annotations

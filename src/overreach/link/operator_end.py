@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import final
 
 import zenoh
 
 from overreach import __version__
+from overreach.clock import MonotonicClock
 from overreach.errors import LinkError
 from overreach.link.endpoint import open_session
 from overreach.link.messages import (
@@ -32,6 +32,7 @@ from overreach.types import Stick
 
 ANSWER_S = 1.0
 """How long an answer is waited for [s]."""
+AGAIN_S = 0.02
 
 
 @final
@@ -71,7 +72,8 @@ class OperatorEnd:
         )
         for reply in replies:
             if reply.ok is not None:
-                return decode_answer(reply.ok.payload.to_bytes())
+                answer: Answer = decode_answer(reply.ok.payload.to_bytes())
+                return answer
         return None
 
     def request(self, request: Request) -> Accepted | Refused:
@@ -86,7 +88,8 @@ class OperatorEnd:
 
         Raises LinkError after `wait_s` [s], where `ended()` says that it never will, or where it does not fit.
         """
-        until = time.monotonic() + wait_s
+        clock = MonotonicClock()
+        until = clock.now() + wait_s
         while True:
             answer = self._ask(KEY_HELLO, Hello(PROTOCOL, __version__), 0.5)
             if isinstance(answer, Welcome):
@@ -95,13 +98,13 @@ class OperatorEnd:
                 raise LinkError(answer.reason)
             if ended():
                 raise LinkError("the robot side has ended before it was ready (see above)")
-            if time.monotonic() > until:
+            if clock.now() > until:
                 raise LinkError(
                     f"no robot side answers at {self.endpoint}: "
                     f"start it with `overreach robot --listen {self.endpoint}`"
                 )
-            time.sleep(0.02)
+            clock.sleep_until(clock.now() + AGAIN_S)
 
     def close(self) -> None:
         """Close the session; without this the process could hang at its end."""
-        self._session.close()
+        self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type

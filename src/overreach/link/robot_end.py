@@ -91,13 +91,12 @@ class RobotEnd:
 
     def close(self) -> None:
         """Close the session; without this the process could hang at its end."""
-        self._session.close()
+        self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
 
 
 def _answer_to(query: zenoh.Query) -> Callable[[Answer], None]:
     def answer(message: Answer) -> None:
         query.reply(query.key_expr, encode(message))
-        query.drop()
+        query.drop()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
 
     return answer
-

@@ -75,9 +75,7 @@ class Actuators:
             return self.happening
         fade = math.exp(-dt / self._lag)
         part = (1.0 - fade) * self._lag / dt
-        mean = tuple(
-            goal + (rate - goal) * part for goal, rate in zip(self._target, self.happening, strict=True)
-        )
+        mean = tuple(goal + (rate - goal) * part for goal, rate in zip(self._target, self.happening, strict=True))
         self.happening = tuple(
             goal + (rate - goal) * fade for goal, rate in zip(self._target, self.happening, strict=True)
         )

@@ -77,8 +77,6 @@ class KinematicRobot:
             arm = self.model.arm
             self._theta = tuple(
                 min(most, max(least, angle + rate * dt))
-                for angle, rate, least, most in zip(
-                    self._theta, dtheta, arm.theta_min, arm.theta_max, strict=True
-                )
+                for angle, rate, least, most in zip(self._theta, dtheta, arm.theta_min, arm.theta_max, strict=True)
             )
             self._now = until

@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import pkgutil
+import sys
+from pathlib import Path
+
+import pytest
+
+import overreach
+
+ROOT = Path(overreach.__file__).parent
+ORDER = ["errors", "types", "clock", "timing", "link", "gate", "law", "model", "arm", "robots", "plugs"]
+COMPOSE = {
+    "control",
+    "loop",
+    "robot_side",
+    "commands",
+    "cli",
+    "doctor",
+    "__main__",
+    "__init__",
+    "cockpit",
+    "experiments",
+}
+
+PUBLIC = {
+    "__version__",
+    "Workspace", "Mount", "Law", "exact", "paper", "switch", "tanh", "smoothstep", "step",
+    "Split", "BaseTwist", "RobotState", "Frame", "Verdict",
+    "PlanarRobot", "Robot", "KinematicRobot", "HandController", "Gate", "Limits",
+    "load_scenario", "simulate", "OverreachError", "SetupError",
+}  # fmt: skip
+
+
+def test_public_names_are_exact() -> None:
+    """The public names are these, no more and no less, and each can be had."""
+    assert set(overreach.__all__) == PUBLIC
+    assert set(dir(overreach)) == PUBLIC
+    for name in PUBLIC:
+        assert getattr(overreach, name) is not None
+    with pytest.raises(AttributeError):
+        _ = overreach.no_such_name
+
+
+def test_typed_and_lazy_names_agree() -> None:
+    """What type checkers see imported is what is loaded lazily, from the same places."""
+    tree = ast.parse((ROOT / "__init__.py").read_text())
+    typed = {
+        alias.name: node.module.removeprefix("overreach.")
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("overreach.")
+        for alias in node.names
+    }
+    assert typed == overreach._HOMES
+
+
+def modules() -> list[str]:
+    return [
+        info.name for info in pkgutil.walk_packages([str(ROOT)], "overreach.") if not info.name.endswith("__main__")
+    ]
+
+
+def test_public_things_are_documented() -> None:
+    """Every module, public class, function and method says what it is."""
+    silent = []
+    for name in modules():
+        module = importlib.import_module(name)
+        if not module.__doc__:
+            silent.append(name)
+        for key, thing in vars(module).items():
+            if key.startswith("_") or getattr(thing, "__module__", None) != name:
+                continue
+            if (inspect.isclass(thing) or inspect.isfunction(thing)) and not thing.__doc__:
+                silent.append(f"{name}.{key}")
+    assert silent == []
+
+
+def imports(path: Path) -> set[str]:
+    """Return the modules that a file imports when it is loaded."""
+    found = set()
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found.add(node.module or "")
+    return found
+
+
+def test_left_does_not_import_right() -> None:
+    """Each folder imports only what stands before it on the way of a command, but for those that compose."""
+    allowed = {
+        "errors": set(),
+        "types": set(),
+        "clock": set(),
+        "timing": set(),
+        "law": {"errors", "types"},
+        "link": {"errors", "types", "clock"},
+        "gate": {"errors", "types"},
+        "model": {"errors", "types", "law"},
+        "arm": {"errors", "types", "law", "model"},
+        "robots": {"errors", "types", "law", "model", "arm"},
+        "plugs": {"errors", "types", "law", "model"},
+    }
+    assert set(allowed) == set(ORDER)
+    for path in ROOT.rglob("*.py"):
+        part = path.relative_to(ROOT).parts[0].removesuffix(".py")
+        if part in COMPOSE:
+            continue
+        for module in imports(path):
+            if module.startswith("overreach."):
+                other = module.split(".")[1]
+                assert other == part or other in allowed[part], f"{path} imports {module}"
+
+
+def test_the_law_is_plain_arithmetic() -> None:
+    """The law imports nothing but math, typing and the project's records: it can be compiled as it stands."""
+    plain = {"__future__", "math", "typing", "collections.abc"}
+    for path in (ROOT / "law").glob("*.py"):
+        others = {module for module in imports(path) if not module.startswith("overreach.")}
+        assert others <= plain, path
+
+
+def test_only_the_clock_reads_time() -> None:
+    """No module but clock.py asks for the time."""
+    readers = {str(path.relative_to(ROOT)) for path in ROOT.rglob("*.py") if {"time", "datetime"} & imports(path)}
+    assert readers == {"clock.py"}
+
+
+def test_files_are_small() -> None:
+    """No file of the package is longer than 300 lines."""
+    long = {path.name: n for path in ROOT.rglob("*.py") if (n := len(path.read_text().splitlines())) > 300}
+    assert long == {}
+    assert sys.version_info >= (3, 11)
