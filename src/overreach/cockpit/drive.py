@@ -34,6 +34,7 @@ def bind_page(host: str, port: int | None) -> socket.socket:
         page.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             page.bind((host, choice))
+            page.listen()  # now, not when the server runs: a port that is only bound can be bound again
         except OSError as error:
             page.close()
             if choice != USUAL_PORT or port is not None:

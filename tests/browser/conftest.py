@@ -1,0 +1,112 @@
+"""A real Chromium on the real page of real processes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+
+from overreach.link.endpoint import free_port
+from overreach.link.messages import Accepted, Configure, Reset, Restart, Stop
+from tests.browser.install import find
+from tests.processes import GENEROUS_S, Half, Observer, half, robot, until
+
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync"
+).split()
+
+
+@dataclass
+class Cockpit:
+    """A page, what is behind it, and who watches the robot."""
+
+    url: str
+    half: Half
+    robot: Half
+    observer: Observer
+    requests: list[str]
+    errors: list[str]
+
+    def watch(self, page: Page) -> Page:
+        """Keep what the page asks for and what goes wrong in it; open it and wait until it can be used."""
+        page.set_default_timeout(GENEROUS_S * 1000)
+        page.on("request", lambda request: self.requests.append(request.url))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.on("console", lambda said: said.type == "error" and self.errors.append(said.text))
+        page.goto(self.url)
+        page.wait_for_function("window.overreach?.page.state && window.overreach.link.ready")
+        return page
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    path = find()
+    if path is None:
+        message = "no Chromium: run `make browser`"
+        if os.environ.get("CI") == "true":
+            pytest.fail(message)
+        pytest.skip(message)
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        yield running
+        running.close()
+
+
+@contextmanager
+def running_cockpit() -> Iterator[Cockpit]:
+    with robot() as (endpoint, side, observer):
+        with half("cockpit", "--connect", endpoint, "--no-browser", "--port", str(free_port())) as running:
+            yield Cockpit(running.url(), running, side, observer, [], [])
+
+
+@pytest.fixture
+def fresh_cockpit() -> Iterator[Cockpit]:
+    """Processes of its own, for a test that ends some."""
+    with running_cockpit() as cockpit:
+        yield cockpit
+
+
+@pytest.fixture(scope="session")
+def shared_cockpit() -> Iterator[Cockpit]:
+    with running_cockpit() as cockpit:
+        yield cockpit
+
+
+@pytest.fixture
+def cockpit(shared_cockpit: Cockpit) -> Cockpit:
+    """The shared processes, the robot disarmed at its start with the settings that it began with."""
+    cockpit, observer = shared_cockpit, shared_cockpit.observer
+    for request in (Stop(), Reset(), Configure(observer.welcome.settings)):
+        assert observer.link.request(request) == Accepted()
+    until(lambda: observer.speed() == 0.0 and not observer.now.armed and not observer.now.stopped, what="rest")
+    until(lambda: observer.link.request(Restart()) == Accepted(), what="the start")
+    until(lambda: observer.now.x_b == 0.0, what="the start")
+    cockpit.requests.clear()
+    cockpit.errors.clear()
+    return cockpit
+
+
+@pytest.fixture
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    opened = browser.new_context(viewport={"width": 1360, "height": 850})
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def phone(browser: Browser) -> Iterator[BrowserContext]:
+    opened = browser.new_context(
+        viewport={"width": 390, "height": 844}, is_mobile=True, has_touch=True, device_scale_factor=2
+    )
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def page(context: BrowserContext, cockpit: Cockpit) -> Page:
+    return cockpit.watch(context.new_page())

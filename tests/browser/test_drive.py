@@ -1,0 +1,250 @@
+"""A person drives: pointer, finger, keys, gamepad. The robot is watched from outside the page."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import BrowserContext, CDPSession, Page
+
+from tests.browser.conftest import Cockpit
+from tests.processes import Observer, until
+
+STOP_S = 0.45
+pytestmark = pytest.mark.browser
+
+
+def centre(page: Page) -> tuple[float, float]:
+    """Return the middle of the pad."""
+    box = page.locator("#pad").bounding_box()
+    assert box
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def arm(page: Page, observer: Observer) -> None:
+    page.click("#arm")
+    until(lambda: observer.now.armed, what="armed")
+
+
+def words(page: Page) -> str:
+    return page.inner_text('[data-share="mu"] .who')
+
+
+def out_and_back(page: Page, observer: Observer, forward: Callable[[], None], back: Callable[[], None]) -> None:
+    """Drive the hand more than 2 m out and back into the arm's reach; the words and the trails must say so."""
+    start = observer.now
+    assert words(page) == "arm"
+    forward()
+    until(lambda: words(page) == "blending", what="blending")
+    until(lambda: words(page) == "base", what="base")
+    until(lambda: observer.now.x_e - start.x_e > 2.05, what="2 m")
+    far = observer.now
+    assert far.mu > 0.99
+    assert far.x_b > 1.0
+    assert abs(far.y_e) < 0.05
+    assert page.inner_text("#verdict-word") == "Moving"
+    back()
+    until(lambda: observer.now.mu == 0.0 and observer.now.v_m < -0.2, what="the arm's turn")
+    until(lambda: 0.5 < observer.now.l < 0.8, what="the arm's reach")
+    assert words(page) == "arm"
+    assert math.dist((start.x_e, start.y_e), (far.x_e, far.y_e)) > 2.0
+
+
+def test_pointer(page: Page, cockpit: Cockpit) -> None:
+    """Dragging the pad with the pointer drives the hand out of reach and back, the base taking over between."""
+    arm(page, cockpit.observer)
+    x, y = centre(page)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    out_and_back(
+        page,
+        cockpit.observer,
+        lambda: page.mouse.move(x, y - 90, steps=6),
+        lambda: page.mouse.move(x, y + 90, steps=12),
+    )
+    page.mouse.up()
+    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+    assert cockpit.errors == []
+
+
+def test_touch_on_a_phone(phone: BrowserContext, cockpit: Cockpit) -> None:
+    """On a phone a finger on the pad does the same; the page does not scroll under it."""
+    page = cockpit.watch(phone.new_page())
+    arm(page, cockpit.observer)
+    x, y = centre(page)
+    finger: CDPSession = phone.new_cdp_session(page)
+
+    def touch(kind: str, dy: float | None) -> None:
+        points = [] if dy is None else [{"x": x, "y": y + dy}]
+        finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def slide(to: float) -> None:
+        for k in range(1, 7):
+            touch("touchMove", to * k / 6)
+
+    touch("touchStart", 0.0)
+    out_and_back(page, cockpit.observer, lambda: slide(-85.0), lambda: slide(85.0))
+    assert page.evaluate("scrollY") == 0
+    touch("touchEnd", None)
+    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+    assert cockpit.errors == []
+
+
+@pytest.mark.parametrize(("up", "down"), [("ArrowUp", "ArrowDown"), ("w", "s")])
+def test_keyboard(page: Page, cockpit: Cockpit, up: str, down: str) -> None:
+    """Arrow keys and W A S D drive while they are held."""
+    page.keyboard.press("Enter")
+    until(lambda: cockpit.observer.now.armed, what="armed")
+
+    def back() -> None:
+        page.keyboard.up(up)
+        page.keyboard.down(down)
+
+    out_and_back(page, cockpit.observer, lambda: page.keyboard.down(up), back)
+    page.keyboard.up(down)
+    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+
+
+def test_gamepad(context: BrowserContext, cockpit: Cockpit) -> None:
+    """The left stick of a gamepad drives, Start arms, B stops, and pulling its plug lets go."""
+    page = context.new_page()
+    page.add_init_script(
+        """window.fake = {connected: true, axes: [0, 0, 0, 0],
+             buttons: Array.from({length: 17}, () => ({pressed: false, value: 0}))};
+           navigator.getGamepads = () => [null, window.fake];"""
+    )
+    cockpit.watch(page)
+    page.evaluate("fake.buttons[9].pressed = true")
+    until(lambda: cockpit.observer.now.armed, what="armed")
+    out_and_back(
+        page,
+        cockpit.observer,
+        lambda: page.evaluate("fake.axes[1] = -1"),
+        lambda: page.evaluate("fake.axes[1] = 1"),
+    )
+    page.evaluate("fake.connected = false")
+    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+    assert page.inner_text("#verdict-word") == "Ready"
+    page.evaluate("fake.connected = true; fake.buttons[1].pressed = true")
+    until(lambda: cockpit.observer.now.stopped, what="the stop")
+
+
+def test_turning(page: Page, cockpit: Cockpit) -> None:
+    """Left on the pad sweeps the hand to the left, past the bearing limit, and the base turns after it."""
+    arm(page, cockpit.observer)
+    page.keyboard.down("ArrowLeft")
+    until(lambda: page.inner_text('[data-share="sigma"] .who') == "base", what="base")
+    until(lambda: cockpit.observer.now.theta_b > 0.5, what="the base's turn")
+    assert cockpit.observer.now.y_e > 0.3
+    assert cockpit.observer.now.psi <= 0.65 + 1e-9
+    page.keyboard.up("ArrowLeft")
+
+
+def test_diagonals_stay_in_the_circle(page: Page, cockpit: Cockpit) -> None:
+    """Two keys at once ask for no more than the pad's rim: both parts shrink alike."""
+    arm(page, cockpit.observer)
+    page.keyboard.down("ArrowUp")
+    page.keyboard.down("ArrowLeft")
+    until(lambda: cockpit.observer.now.w_c > 0.28, what="the ramp")
+    assert cockpit.observer.now.v_c == pytest.approx(0.4 * math.sqrt(0.5), abs=1e-6)
+    assert cockpit.observer.now.w_c == pytest.approx(0.4 * math.sqrt(0.5), abs=1e-6)
+    page.keyboard.up("ArrowUp")
+    page.keyboard.up("ArrowLeft")
+
+
+@pytest.mark.parametrize("way", ["release", "close", "offline", "hidden", "kill"])
+def test_every_way_of_letting_go_stops_the_robot(context: BrowserContext, fresh_cockpit: Cockpit, way: str) -> None:
+    """Release, a closed page, going offline, a hidden page and a killed cockpit each stop the robot in 0.45 s."""
+    cockpit = fresh_cockpit
+    page = cockpit.watch(context.new_page())
+    arm(page, cockpit.observer)
+    x, y = centre(page)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y - 90, steps=4)
+    until(lambda: cockpit.observer.speed() > 0.39, what="full speed")
+    since = time.monotonic()
+    if way == "release":
+        page.mouse.up()
+    elif way == "close":
+        page.close()
+    elif way == "offline":
+        context.set_offline(True)
+    elif way == "hidden":
+        page.evaluate(
+            "Object.defineProperty(document, 'hidden', {value: true}); document.dispatchEvent(new Event('visibilitychange'))"
+        )
+    else:
+        cockpit.half.process.send_signal(signal.SIGKILL)
+    assert cockpit.observer.stop_time(since) <= STOP_S
+    until(lambda: cockpit.observer.speed() == 0.0)
+    assert cockpit.robot.process.poll() is None
+
+
+def test_a_page_that_hangs_stops_the_robot(page: Page, cockpit: Cockpit) -> None:
+    """A page that is busy for seconds sends nothing: 200 ms later the robot ramps, and it stays until a new press."""
+    arm(page, cockpit.observer)
+    page.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.speed() > 0.39, what="full speed")
+    page.evaluate("setTimeout(() => { const end = Date.now() + 1500; while (Date.now() < end); }, 0)")
+    since = time.monotonic()
+    assert cockpit.observer.stop_time(since) <= STOP_S + 0.1  # the call itself takes its time to arrive
+    until(lambda: cockpit.observer.now.verdict == "regrip", what="the demand for a new press")
+    assert cockpit.observer.speed() == 0.0
+    page.keyboard.up("ArrowUp")
+    page.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.speed() > 0.3, what="motion after a new press")
+    page.keyboard.up("ArrowUp")
+
+
+def test_nothing_moves_before_arming(page: Page, cockpit: Cockpit) -> None:
+    """A pad that is dragged on a disarmed robot moves nothing, and the page says what to do."""
+    assert page.inner_text("#verdict-word") == "Disarmed"
+    assert "Press Arm" in page.inner_text("#pad-hint")
+    x, y = centre(page)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y - 90, steps=4)
+    until(lambda: cockpit.observer.now.ack > 5, what="sticks at the robot")
+    assert cockpit.observer.speed() == 0.0
+    page.mouse.up()
+
+
+@pytest.mark.parametrize("how", ["button", "Escape", "Space"])
+def test_stop_is_latched_on_the_page(page: Page, cockpit: Cockpit, how: str) -> None:
+    """Stop, by button or key, stops and holds; Reset moves nothing; Arm and a new press are needed to go on."""
+    observer = cockpit.observer
+    arm(page, observer)
+    page.keyboard.down("ArrowUp")
+    until(lambda: observer.speed() > 0.39, what="full speed")
+    if how == "button":
+        page.click("#stop")
+    else:
+        page.keyboard.press(how)
+    until(lambda: observer.now.stopped and observer.speed() == 0.0, what="the stop")
+    until(lambda: page.inner_text("#verdict-word") == "Stopped", what="the word")
+    assert page.is_disabled("#arm")
+    page.click("#reset")
+    until(lambda: not observer.now.stopped, what="the reset")
+    until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="the word")
+    assert observer.speed() == 0.0
+    page.keyboard.up("ArrowUp")
+    arm(page, observer)
+    page.keyboard.down("ArrowUp")
+    until(lambda: observer.speed() > 0.1, what="motion")
+    page.keyboard.up("ArrowUp")
+
+
+def test_two_pages_one_operator(page: Page, context: BrowserContext, cockpit: Cockpit) -> None:
+    """The page that armed drives; a second page is refused, and may stop the robot."""
+    arm(page, cockpit.observer)
+    other = cockpit.watch(context.new_page())
+    other.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.now.verdict == "other_operator", what="the refusal")
+    assert cockpit.observer.speed() == 0.0
+    other.keyboard.up("ArrowUp")
+    other.click("#stop")
+    until(lambda: cockpit.observer.now.stopped, what="the stop")

@@ -1,0 +1,220 @@
+"""What the page shows, and that it shows it everywhere."""
+
+from __future__ import annotations
+
+import http.client
+import re
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page
+
+from tests.browser.conftest import Cockpit
+from tests.browser.test_drive import arm
+from tests.processes import until
+
+pytestmark = pytest.mark.browser
+
+
+def test_no_external_request(page: Page, cockpit: Cockpit) -> None:
+    """The page asks nobody but its own server for anything, and nothing goes wrong in it."""
+    page.wait_for_timeout(1000)
+    foreign = [url for url in cockpit.requests if not url.startswith((cockpit.url, "data:", "blob:"))]
+    assert foreign == []
+    assert len(cockpit.requests) > 10
+    assert cockpit.errors == []
+
+
+def test_settings_are_live(page: Page, cockpit: Cockpit) -> None:
+    """Law, blend, frame, widths, workspace and speed are changed on the page and come into force on the robot."""
+    observer = cockpit.observer
+
+    def choose(field: str, value: str) -> None:
+        page.click(f"#set-{field}")
+        page.click(f'.q-menu .q-item:has-text("{value}")')
+
+    def slide(field: str, keys: list[str]) -> None:
+        page.locator(f'#set-{field} [tabindex="0"]').first.focus()
+        for key in keys:
+            page.keyboard.press(key)
+
+    def force() -> dict[str, object]:
+        settings = observer.link.welcome(5.0).settings
+        return {name: getattr(settings, name) for name in settings.__struct_fields__}
+
+    choose("law", "paper")
+    until(lambda: force()["law"] == "paper", what="the law")
+    choose("frame", "world")
+    until(lambda: force()["frame"] == "world", what="the frame")
+    choose("blend", "tanh")
+    until(lambda: force()["blend"] == "tanh", what="the blend")
+    slide("alpha", ["ArrowRight"] * 3)
+    until(lambda: force()["alpha"] == 53.0, what="alpha")
+    slide("beta", ["ArrowLeft"] * 2)
+    until(lambda: force()["beta"] == 48.0, what="beta")
+    slide("speed_scale", ["ArrowLeft"] * 4)
+    until(lambda: force()["speed_scale"] == pytest.approx(0.8), what="the speed")
+    slide("l_min", ["ArrowRight"] * 2)
+    until(lambda: force()["l_min"] == pytest.approx(0.47), what="L_min")
+    slide("psi_min", ["ArrowRight"] * 2)
+    until(lambda: force()["psi_min"] == pytest.approx(-0.5), what="Psi_min")
+    until(lambda: page.evaluate("overreach.page.settings.psi_min") == pytest.approx(-0.5), what="the view")
+    page.click("#defaults")
+    until(lambda: force()["law"] == "exact", what="the defaults")
+    until(lambda: "exact" in page.locator("#settings .choices").inner_text(), what="the controls")
+    assert cockpit.errors == []
+
+
+def test_settings_reach_other_pages(page: Page, context: BrowserContext, cockpit: Cockpit) -> None:
+    """Settings that one page changes are shown by the other."""
+    other = cockpit.watch(context.new_page())
+    page.click("#set-law")
+    page.click('.q-menu .q-item:has-text("switch")')
+    until(lambda: other.evaluate("overreach.page.settings.law") == "switch", what="the other page")
+    until(lambda: "switch" in other.locator("#settings .choices").inner_text(), what="the other page's controls")
+
+
+def test_plots_are_drawn(page: Page, cockpit: Cockpit) -> None:
+    """The plots hold what the robot told, with the limits in force."""
+    arm(page, cockpit.observer)
+    page.keyboard.down("ArrowUp")
+    page.wait_for_timeout(1500)
+    page.keyboard.up("ArrowUp")
+    chart = page.evaluate(
+        """async () => {
+            const { echarts } = await import("nicegui-echart");
+            const option = echarts.getInstanceByDom(document.getElementById("plots")).getOption();
+            return {names: option.series.map((s) => s.name), counts: option.series.map((s) => s.data.length),
+                    limits: option.series.map((s) => (s.markLine?.data ?? []).map((m) => m.yAxis))};
+        }"""
+    )
+    assert chart["names"] == ["l", "ψ", "v_b base", "v_m arm", "w_b base", "w_m arm"]
+    assert min(chart["counts"]) > 10
+    assert chart["limits"][0] == [0.45, 0.85]
+    assert chart["limits"][1] == [-0.6, 0.6]
+
+
+def test_view_follows_zooms_and_pans(page: Page, cockpit: Cockpit) -> None:
+    """The camera follows the robot until it is dragged; the wheel and the buttons zoom."""
+    scale = page.evaluate("overreach.view.scale")
+    page.click("#zoom-in")
+    assert page.evaluate("overreach.view.scale") == pytest.approx(scale * 1.25)
+    page.mouse.move(300, 400)
+    page.mouse.wheel(0, 200)
+    until(lambda: page.evaluate("overreach.view.scale") < scale * 1.25, what="the wheel")
+    page.mouse.down()
+    page.mouse.move(360, 430, steps=3)
+    page.mouse.up()
+    assert page.get_attribute("#follow", "aria-pressed") == "false"
+    page.click("#follow")
+    assert page.get_attribute("#follow", "aria-pressed") == "true"
+    page.wait_for_timeout(1500)  # the camera comes back to the robot
+    at_first = page.evaluate("overreach.view.centre.x")
+    arm(page, cockpit.observer)
+    page.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.now.x_b > 0.5, what="a drive")
+    page.keyboard.up("ArrowUp")
+    until(lambda: page.evaluate("overreach.view.centre.x") > at_first + 0.3, what="the camera")
+    trails = page.evaluate("[overreach.view.trails.hand.length, overreach.view.trails.base.length]")
+    assert min(trails) > 10
+    page.click("#restart")
+    until(lambda: abs(cockpit.observer.now.x_b) < 1e-9, what="the start")
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("size", [(1360, 850), (1920, 1080), (1024, 700), (820, 1180), (390, 844), (360, 640)])
+def test_layout(browser: Browser, cockpit: Cockpit, size: tuple[int, int], dark: bool) -> None:
+    """From phone to desktop, light and dark: nothing overflows sideways, and what drives is on the first screen."""
+    context = browser.new_context(
+        viewport={"width": size[0], "height": size[1]}, color_scheme="dark" if dark else "light"
+    )
+    try:
+        page = cockpit.watch(context.new_page())
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        for one in ("#arm", "#reset", "#stop", "#pad", "#view", "#verdict", "#authority"):
+            box = page.locator(one).bounding_box()
+            assert box, one
+            assert box["x"] >= 0, one
+            assert box["x"] + box["width"] <= size[0] + 0.5, one
+            assert box["y"] >= 0, one
+            assert box["y"] + box["height"] <= size[1] + 0.5, one
+        background = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        light = sum(int(part) for part in re.findall(r"\d+", background)[:3]) > 384
+        assert light != dark
+    finally:
+        context.close()
+
+
+def test_texts_have_contrast(browser: Browser, cockpit: Cockpit) -> None:
+    """In light and dark, text colours have a contrast of at least 4.5 on the surfaces they stand on (WCAG AA)."""
+
+    def luminance(colour: str) -> float:
+        parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        linear = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    for scheme in ("light", "dark"):
+        context = browser.new_context(color_scheme=scheme)  # type: ignore[arg-type]
+        page = cockpit.watch(context.new_page())
+        style = "getComputedStyle(document.documentElement).getPropertyValue('--{}').trim()"
+        names = ("ink", "muted", "arm", "base", "ok", "warn", "hand")
+        for surface in ("panel", "bg"):
+            behind = luminance(page.evaluate(style.format(surface)))
+            for name in names:
+                front = luminance(page.evaluate(style.format(name)))
+                ratio = (max(front, behind) + 0.05) / (min(front, behind) + 0.05)
+                assert ratio >= 4.5 or (surface == "bg" and ratio >= 4.0), (scheme, name, surface, ratio)
+        context.close()
+
+
+def test_theme_button(page: Page) -> None:
+    """The button changes between light and dark, and a reload keeps the choice."""
+    first = page.get_attribute("html", "data-theme")
+    page.click("#theme")
+    second = page.get_attribute("html", "data-theme")
+    assert {first, second} == {"light", "dark"}
+    page.reload()
+    page.wait_for_function("window.overreach?.page.state")
+    assert page.get_attribute("html", "data-theme") == second
+
+
+def test_page_says_when_the_robot_side_is_gone(context: BrowserContext, fresh_cockpit: Cockpit) -> None:
+    """A robot side that has ended is told on the page within seconds."""
+    cockpit = fresh_cockpit
+    page = cockpit.watch(context.new_page())
+    cockpit.robot.process.kill()
+    until(lambda: "silent" in page.inner_text("#verdict-reason"), what="the news")
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": "http://evil.example", "Host": "evil.example"},
+        {},
+        {"Origin": "null"},
+    ],
+)
+def test_foreign_origins_do_not_get_in(cockpit: Cockpit, headers: dict[str, str]) -> None:
+    """The WebSocket is refused with 403 to any page that this cockpit did not serve."""
+    assert upgrade(cockpit.url, headers) == 403
+
+
+def test_the_own_origin_gets_in(cockpit: Cockpit) -> None:
+    """The same request with the page's own origin is let in: the refusals above are about the origin."""
+    assert upgrade(cockpit.url, {"Origin": cockpit.url}) == 101
+
+
+def upgrade(url: str, headers: dict[str, str]) -> int:
+    """Ask for a WebSocket and return the status of the answer."""
+    connection = http.client.HTTPConnection(url.removeprefix("http://"), timeout=10)
+    try:
+        handshake = {
+            "Connection": "Upgrade",
+            "Upgrade": "websocket",
+            "Sec-WebSocket-Version": "13",
+            "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+        }
+        connection.request("GET", "/ws", headers={**handshake, **headers})
+        return connection.getresponse().status
+    finally:
+        connection.close()
