@@ -9,16 +9,13 @@ from dataclasses import dataclass
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
-
-from overreach.link.endpoint import free_port
-from overreach.link.messages import Accepted, Configure, Reset, Restart, Stop
 from tests.browser.install import find
 from tests.processes import GENEROUS_S, Half, Observer, half, robot, until
 
-FLAGS = (
-    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-    "--disable-component-update --disable-sync"
-).split()
+from overreach.link.endpoint import free_port
+from overreach.link.messages import Accepted, Configure, Reset, Restart, Stop
+
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
 
 
 @dataclass

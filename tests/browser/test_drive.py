@@ -9,7 +9,6 @@ from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import BrowserContext, CDPSession, Page
-
 from tests.browser.conftest import Cockpit
 from tests.processes import Observer, until
 
@@ -93,19 +92,22 @@ def test_touch_on_a_phone(phone: BrowserContext, cockpit: Cockpit) -> None:
     assert cockpit.errors == []
 
 
-@pytest.mark.parametrize(("up", "down"), [("ArrowUp", "ArrowDown"), ("w", "s")])
-def test_keyboard(page: Page, cockpit: Cockpit, up: str, down: str) -> None:
-    """Arrow keys and W A S D drive while they are held."""
+def test_keyboard(page: Page, cockpit: Cockpit) -> None:
+    """The arrow keys drive while they are held; W A S D do the same."""
     page.keyboard.press("Enter")
     until(lambda: cockpit.observer.now.armed, what="armed")
 
     def back() -> None:
-        page.keyboard.up(up)
-        page.keyboard.down(down)
+        page.keyboard.up("ArrowUp")
+        page.keyboard.down("ArrowDown")
 
-    out_and_back(page, cockpit.observer, lambda: page.keyboard.down(up), back)
-    page.keyboard.up(down)
+    out_and_back(page, cockpit.observer, lambda: page.keyboard.down("ArrowUp"), back)
+    page.keyboard.up("ArrowDown")
     until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+    for key, wish in (("w", (0.4, 0.0)), ("a", (0.0, 0.4)), ("s", (-0.4, 0.0)), ("d", (0.0, -0.4))):
+        page.keyboard.down(key)
+        until(lambda wish=wish: (cockpit.observer.now.v_c, cockpit.observer.now.w_c) == wish, what=key)  # type: ignore[misc]
+        page.keyboard.up(key)
 
 
 def test_gamepad(context: BrowserContext, cockpit: Cockpit) -> None:

@@ -6,8 +6,7 @@ import http.client
 import re
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
-
+from playwright.sync_api import BrowserContext, Page
 from tests.browser.conftest import Cockpit
 from tests.browser.test_drive import arm
 from tests.processes import until
@@ -120,31 +119,30 @@ def test_view_follows_zooms_and_pans(page: Page, cockpit: Cockpit) -> None:
     until(lambda: abs(cockpit.observer.now.x_b) < 1e-9, what="the start")
 
 
-@pytest.mark.parametrize("dark", [False, True])
-@pytest.mark.parametrize("size", [(1360, 850), (1920, 1080), (1024, 700), (820, 1180), (390, 844), (360, 640)])
-def test_layout(browser: Browser, cockpit: Cockpit, size: tuple[int, int], dark: bool) -> None:
+SIZES = [(1360, 850), (1920, 1080), (1024, 700), (820, 1180), (390, 844), (360, 640)]
+
+
+def test_layout(page: Page) -> None:
     """From phone to desktop, light and dark: nothing overflows sideways, and what drives is on the first screen."""
-    context = browser.new_context(
-        viewport={"width": size[0], "height": size[1]}, color_scheme="dark" if dark else "light"
-    )
-    try:
-        page = cockpit.watch(context.new_page())
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-        for one in ("#arm", "#reset", "#stop", "#pad", "#view", "#verdict", "#authority"):
-            box = page.locator(one).bounding_box()
-            assert box, one
-            assert box["x"] >= 0, one
-            assert box["x"] + box["width"] <= size[0] + 0.5, one
-            assert box["y"] >= 0, one
-            assert box["y"] + box["height"] <= size[1] + 0.5, one
-        background = page.evaluate("getComputedStyle(document.body).backgroundColor")
-        light = sum(int(part) for part in re.findall(r"\d+", background)[:3]) > 384
-        assert light != dark
-    finally:
-        context.close()
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+            page.wait_for_timeout(50)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), width
+            for one in ("#arm", "#reset", "#stop", "#pad", "#view", "#verdict", "#authority"):
+                box = page.locator(one).bounding_box()
+                assert box, one
+                assert box["x"] >= 0, (one, width)
+                assert box["x"] + box["width"] <= width + 0.5, (one, width)
+                assert box["y"] >= 0, (one, width)
+                assert box["y"] + box["height"] <= height + 0.5, (one, width)
+            background = page.evaluate("getComputedStyle(document.body).backgroundColor")
+            light = sum(int(part) for part in re.findall(r"\d+", background)[:3]) > 384
+            assert light == (scheme == "light")
 
 
-def test_texts_have_contrast(browser: Browser, cockpit: Cockpit) -> None:
+def test_texts_have_contrast(page: Page) -> None:
     """In light and dark, text colours have a contrast of at least 4.5 on the surfaces they stand on (WCAG AA)."""
 
     def luminance(colour: str) -> float:
@@ -152,18 +150,15 @@ def test_texts_have_contrast(browser: Browser, cockpit: Cockpit) -> None:
         linear = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
+    style = "getComputedStyle(document.documentElement).getPropertyValue('--{}').trim()"
     for scheme in ("light", "dark"):
-        context = browser.new_context(color_scheme=scheme)  # type: ignore[arg-type]
-        page = cockpit.watch(context.new_page())
-        style = "getComputedStyle(document.documentElement).getPropertyValue('--{}').trim()"
-        names = ("ink", "muted", "arm", "base", "ok", "warn", "hand")
+        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
         for surface in ("panel", "bg"):
             behind = luminance(page.evaluate(style.format(surface)))
-            for name in names:
+            for name in ("ink", "muted", "arm", "base", "ok", "warn", "hand"):
                 front = luminance(page.evaluate(style.format(name)))
                 ratio = (max(front, behind) + 0.05) / (min(front, behind) + 0.05)
                 assert ratio >= 4.5 or (surface == "bg" and ratio >= 4.0), (scheme, name, surface, ratio)
-        context.close()
 
 
 def test_theme_button(page: Page) -> None:

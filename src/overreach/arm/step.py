@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import atan2, cos, sin, sqrt
 
-from overreach.arm.planar import joint_rates
+from overreach.arm.planar import SINE_DAMPED, joint_rates
 from overreach.law.authority import Limits6, Mount3, exact
 from overreach.law.blend import Rise
 
@@ -31,5 +31,9 @@ def planar_step(
     psi = theta_1 + atan2(f, e)
     delta = theta_e - theta_b - psi - mount[2]
     _, _, v_b, w_b, v_m, w_m, _ = exact(l, psi, v_c * cos(delta), v_c * sin(delta) + w_c * l, rise, limits, mount)
-    dtheta_1, dtheta_2, _ = joint_rates(c2, s2, l, v_m, w_m, a, b, 1)
-    return v_b, w_b, dtheta_1, dtheta_2
+    if -SINE_DAMPED < s2 < SINE_DAMPED:
+        dtheta_1, dtheta_2, _ = joint_rates(c2, s2, l, v_m, w_m, a, b, 1)
+        return v_b, w_b, dtheta_1, dtheta_2
+    # Away from the singularities: the two lines of `joint_rates` themselves, for the call costs a tenth of the step.
+    dtheta_2 = -v_m * l / (a * b * s2)
+    return v_b, w_b, w_m - b * (b + a * c2) / (l * l) * dtheta_2, dtheta_2

@@ -20,8 +20,11 @@ Shares = tuple[float, float, float, float, float, float, float]
 BASE_GAIN = 5.0
 """The base drives at most this many times as fast as the hand; nearer to c = 0 all is scaled."""
 
+BASE_GAIN_2 = BASE_GAIN * BASE_GAIN
+
 LEVER_MIN = 0.1
 """The lever k_t by which the base turns the hand is taken as at least this part of l."""
+LEVER_MIN_2 = LEVER_MIN * LEVER_MIN
 
 
 def scaled_drive(drive: float, lined: float, speed: float) -> tuple[float, float]:
@@ -54,14 +57,13 @@ def paper(
     sigma = rise(psi - psi_max, k_psi) if w_c >= 0.0 else rise(psi_min - psi, k_psi)
     drive = mu * u_r
     c = cos(psi + mount[2])
-    speed = hypot(u_r, u_t)
     scale = 1.0
-    if abs(drive) > BASE_GAIN * speed * abs(c):
-        v_b, scale = scaled_drive(drive, c, speed)
+    if drive * drive > BASE_GAIN_2 * (u_r * u_r + u_t * u_t) * c * c:
+        v_b, scale = scaled_drive(drive, c, hypot(u_r, u_t))
         u_r *= scale
         w_c *= scale
     else:
-        v_b = drive / c if drive != 0.0 else 0.0
+        v_b = drive / c
     return mu, sigma, v_b, sigma * w_c, (1.0 - mu) * u_r, (1.0 - sigma) * w_c, scale
 
 
@@ -92,54 +94,55 @@ def exact(
     sn = sin(psi_d)
     k_r = s_x * sn - s_y * c
     k_t = l + s_x * c + s_y * sn
-    lever = k_t if k_t > LEVER_MIN * l else LEVER_MIN * l
 
-    mu = rise(l - l_max, k_l) if u_r >= 0.0 else rise(l_min - l, k_l)
-    speed = hypot(u_r, u_t)
+    if u_r >= 0.0:
+        g = 1.0
+        mu = rise(l - l_max, k_l)
+    else:
+        g = -1.0
+        mu = rise(l_min - l, k_l)
+    drive = mu * u_r
+    speed_2 = u_r * u_r + u_t * u_t
     scale = 1.0
     v_b = 0.0
     w_l = 0.0
-    drive = mu * u_r
     if drive != 0.0:
-        # Line up behind the hand. eta is the heading, from the base's, of the hand's line of motion (of u
-        # if u_r >= 0, else of -u), y the base's offset to the left of it, L = |p| the hand's distance:
-        # q = -y/L^2 + 2 g eta/L. Deviations die out at -|v_b|/l (double), driving and reversing alike.
-        g = 1.0 if u_r >= 0.0 else -1.0
-        eta = psi_d + atan2(g * u_t, g * u_r)
-        if eta > pi or eta < -pi:
-            eta -= copysign(2.0 * pi, eta)
-        y = g * l * u_t / speed
-        length_2 = l * l
-        if s_x != 0.0 or s_y != 0.0:
-            y += s_x * sin(eta) - s_y * cos(eta)
-            length_2 = max(2.0 * l * k_t - length_2 + s_x * s_x + s_y * s_y, 0.01 * length_2)
-        if abs(drive) > BASE_GAIN * speed * abs(c):
-            v_b, scale = scaled_drive(drive, c, speed)
+        if drive * drive > BASE_GAIN_2 * speed_2 * c * c:
+            v_b, scale = scaled_drive(drive, c, hypot(u_r, u_t))
         else:
             v_b = drive / c
-        w_l = v_b * (2.0 * g * eta * sqrt(length_2) - y) / length_2
+        if speed_2 > 0.0:
+            # Line up behind the hand. eta is the heading, from the base's, of the hand's line of motion (of u
+            # if u_r >= 0, else of -u), y = g (k_t u_t + k_r u_r)/|u| the base's offset to the left of it and
+            # L^2 = k_t^2 + k_r^2 the hand's distance: q = -y/L^2 + 2 g eta/L. Deviations die out with the double
+            # eigenvalue -|v_b|/l, driving and reversing alike.
+            eta = psi_d + atan2(g * u_t, g * u_r)
+            if eta > pi or eta < -pi:
+                eta -= copysign(2.0 * pi, eta)
+            length_2 = k_t * k_t + k_r * k_r
+            if length_2 < LEVER_MIN_2 * l * l:
+                length_2 = LEVER_MIN_2 * l * l
+            w_l = v_b * g * (2.0 * eta / sqrt(length_2) - (k_t * u_t + k_r * u_r) / (sqrt(speed_2) * length_2))
 
-    # sigma goes by the sign of w_des, the bearing rate that is left to the arm if the base only drives and
+    # sigma depends on the sign of w_des, the bearing rate that is left to the arm if the base only drives and
     # lines up. That sign is the same for every sigma wherever driving helps at all: nothing is searched.
-    left = u_t * scale - k_t * w_l
-    if left + v_b * sn - w_l * k_r * sn / (c if c != 0.0 else 1.0) >= 0.0:
-        sigma = rise(psi - psi_max, k_psi)
-    else:
-        sigma = rise(psi_min - psi, k_psi)
+    w_des = u_t * scale - (k_t + k_r * sn / c) * w_l + v_b * sn
+    sigma = rise(psi - psi_max, k_psi) if w_des >= 0.0 else rise(psi_min - psi, k_psi)
+    lever = k_t
     if k_r != 0.0:
+        lever = max(k_t, LEVER_MIN * l)
         ratio = sigma * k_r / lever
         drive = v_b * c - (1.0 - sigma) * w_l * k_r - u_t * scale * ratio
         straight = c + sn * ratio
-        if abs(drive) > BASE_GAIN * speed * abs(straight):
-            v_b, more = scaled_drive(drive, straight, speed)
+        if drive * drive > BASE_GAIN_2 * speed_2 * straight * straight:
+            v_b, more = scaled_drive(drive, straight, hypot(u_r, u_t))
             scale *= more
             w_l *= more
-        elif drive != 0.0:
+        elif straight != 0.0:
             v_b = drive / straight
-        else:
-            v_b = 0.0
-    u_r *= scale
-    u_t *= scale
+    if scale != 1.0:
+        u_r *= scale
+        u_t *= scale
     d = u_t + v_b * sn
     w_b = sigma * d / lever + (1.0 - sigma) * w_l
     return mu, sigma, v_b, w_b, u_r - c * v_b - k_r * w_b, (d - k_t * w_b) / l, scale

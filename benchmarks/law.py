@@ -1,0 +1,56 @@
+"""The cost of the law and of the full planar step, in plain CPython."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from benchmarks.measure import Promise, in_turns, promise
+from overreach.arm.step import planar_step
+from overreach.control import HandController
+from overreach.law.authority import exact, paper
+from overreach.law.blend import Blend, smoothstep, tanh
+from overreach.law.laws import exact as make_exact
+from overreach.model.planar import load_planar
+from overreach.robots.kinematic import KinematicRobot
+
+MOUNT = (0.0, 0.0, 0.0)
+OFFSET = (0.1, 0.05, 0.1)
+
+
+def limits(blend: Blend) -> tuple[float, float, float, float, float, float]:
+    return (0.45, 0.85, -0.6, 0.6, blend.k_l, blend.k_psi)
+
+
+def run() -> Iterator[Promise]:
+    """Measure the law in its three regions: the arm alone, blending, the base alone."""
+    soft, paper_blend = smoothstep(), tanh()
+    law = make_exact()
+    robot = KinematicRobot(load_planar())
+    controller = HandController(robot.model, law)
+    state = robot.read(0.0)
+
+    def law_call(l: float, blend: Blend, mount: tuple[float, float, float]) -> partial[object]:
+        return partial(exact, l, 0.3, 0.3, 0.1, blend.rise, limits(blend), mount)
+
+    def step_call(theta_2: float, blend: Blend, mount: tuple[float, float, float]) -> partial[object]:
+        return partial(planar_step, -0.2, theta_2, 0.1, 0.2, 0.3, 0.2, blend.rise, limits(blend), mount, 0.5, 0.5)
+
+    took = in_turns(
+        {
+            "law exact, arm alone": law_call(0.6, soft, MOUNT),
+            "law exact, blending (smoothstep)": law_call(0.86, soft, MOUNT),
+            "law exact, blending (tanh)": law_call(0.86, paper_blend, MOUNT),
+            "law exact, blending (tanh), shoulder off centre": law_call(0.86, paper_blend, OFFSET),
+            "law paper (tanh)": partial(paper, 0.86, 0.3, 0.3, 0.1, paper_blend.rise, limits(paper_blend), MOUNT),
+            "full planar step, arm alone": step_call(1.7, soft, MOUNT),
+            "full planar step, blending (smoothstep)": step_call(1.07, soft, MOUNT),
+            "full planar step, blending (tanh)": step_call(1.07, paper_blend, MOUNT),
+            "full planar step, blending (tanh), shoulder off centre": step_call(1.07, paper_blend, OFFSET),
+            "exact().split, record and all": partial(law.split, 0.86, 0.3, 0.3, 0.1),
+            "HandController.step, limits and all": partial(controller.step, state, 0.3, 0.1, 0.005),
+        }
+    )
+    for name, values in took.items():
+        most = 1.5 if name.startswith("law exact") else 2.0 if name.startswith("full") else None
+        yield promise(name, values, "us", most, note=f"best {min(values):.2f}")
