@@ -19,7 +19,7 @@ PROBE = """
   const { page, stick, view } = window.overreach;
   window.took = [];
   let waiting = null;
-  document.getElementById("pad").addEventListener("pointermove", (event) => {
+  document.getElementById("pad").addEventListener("pointerrawupdate", (event) => {
     if (!waiting) waiting = { seq: stick.seq, at: event.timeStamp };
   });
   view.afterDraw.push(() => {

@@ -81,15 +81,16 @@ def test_plots_are_drawn(page: Page, cockpit: Cockpit) -> None:
     chart = page.evaluate(
         """async () => {
             const { echarts } = await import("nicegui-echart");
-            const option = echarts.getInstanceByDom(document.getElementById("plots")).getOption();
-            return {names: option.series.map((s) => s.name), counts: option.series.map((s) => s.data.length),
-                    limits: option.series.map((s) => (s.markLine?.data ?? []).map((m) => m.yAxis))};
+            const series = [...document.querySelectorAll(".plot")]
+                .flatMap((plot) => echarts.getInstanceByDom(plot).getOption().series);
+            return {names: series.map((s) => s.name), counts: series.map((s) => s.data.length),
+                    limits: series.map((s) => (s.markLine?.data ?? []).map((m) => m.yAxis))};
         }"""
     )
-    assert chart["names"] == ["l", "ψ", "v_b base", "v_m arm", "w_b base", "w_m arm"]
+    assert set(chart["names"]) == {"l", "ψ", "v_b base", "v_m arm", "w_b base", "w_m arm"}
     assert min(chart["counts"]) > 10
-    assert chart["limits"][0] == [0.45, 0.85]
-    assert chart["limits"][1] == [-0.6, 0.6]
+    assert [0.45, 0.85] in chart["limits"]
+    assert [-0.6, 0.6] in chart["limits"]
 
 
 def test_view_follows_zooms_and_pans(page: Page, cockpit: Cockpit) -> None:

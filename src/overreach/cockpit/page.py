@@ -10,6 +10,13 @@ from overreach import __version__
 from overreach.cockpit.relay import Relay
 from overreach.cockpit.settings_panel import SettingsPanel
 
+PLOTS = {
+    "l": "<b>l</b> m",
+    "psi": "<b>ψ</b> rad",
+    "linear": '<b>linear</b> m/s <span><i class="k-base"></i>v<sub>b</sub> base <i class="k-arm"></i>v<sub>m</sub> arm</span>',
+    "angular": '<b>angular</b> rad/s <span><i class="k-base"></i>w<sub>b</sub> base <i class="k-arm"></i>w<sub>m</sub> arm</span>',
+}
+"""The plots, top to bottom, with their captions; `static/plots.js` says what is in each."""
 MARKUP = files("overreach.cockpit").joinpath("static/stage.html")
 
 
@@ -26,7 +33,10 @@ def build_page(relay: Relay) -> None:
             ui.html(_AUTHORITY, sanitize=False, tag="div")
             with ui.element("section").classes("card"):
                 ui.html("<h2>Last 20 s</h2>", sanitize=False)
-                ui.echart({}).props('id=plots role=img aria-label="l, psi and the speeds over time"')
+                with ui.element("div").props("id=plots"):
+                    for name, caption in PLOTS.items():
+                        ui.html(caption, sanitize=False, tag="p").classes("caption")
+                        ui.echart({}).classes("plot").props(f'data-plot="{name}" role=img aria-label="{name} over time"')
             panel = SettingsPanel(relay)
     relay.on_settings.add(panel.show)
     ui.context.client.on_delete(lambda: relay.on_settings.discard(panel.show))

@@ -17,13 +17,13 @@ const $ = (id) => document.getElementById(id);
 
 // The page's library builds the page after this module has loaded.
 async function built() {
-  while (!$("view") || !$("plots")) await new Promise((resolve) => setTimeout(resolve, 10));
+  while (!$("view") || document.querySelectorAll(".plot").length < 4) await new Promise((resolve) => setTimeout(resolve, 10));
 }
 
 await built();
 const panel = new Panel();
 const view = new View($("view"));
-const plots = new Plots($("plots"));
+const plots = new Plots([...document.querySelectorAll(".plot")]);
 const page = { robot: null, settings: null, state: null, states: 0, heard: performance.now(), drawn: null };
 
 const link = new Link({
@@ -63,6 +63,7 @@ view.afterDraw.push((state) => {
   panel.show(state, Math.hypot(...handVelocity(state, page.robot)));
   page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
 });
+view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
 setInterval(() => {
   if (link.ready && performance.now() - page.heard > SILENT_MS) panel.down("The robot side is silent.");
 }, 100);

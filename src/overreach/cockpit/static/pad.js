@@ -20,7 +20,9 @@ export function attachPad(stick, pad) {
     pad.setPointerCapture(pointer);
     stick.press("pad", ...place(event));
   });
-  pad.addEventListener("pointermove", (event) => event.pointerId === pointer && stick.move("pad", ...place(event)));
+  // Raw updates come at once; pointermove waits for the next frame, up to 17 ms.
+  const moved = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
+  pad.addEventListener(moved, (event) => event.pointerId === pointer && stick.move("pad", ...place(event)));
   const end = (event) => {
     if (event.pointerId !== pointer) return;
     pointer = null;

@@ -5,6 +5,7 @@ const KINDS = {
   beside: "warn", stale: "warn", regrip: "warn", lost: "warn", not_finite: "warn", other_operator: "warn", out_of_order: "warn",
   disarmed: "down", stopped: "stop",
 };
+const NUMBERS_MS = 120;
 const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
 
 const $ = (id) => document.getElementById(id);
@@ -17,6 +18,7 @@ export const authority = (share) => (share <= EDGE ? "arm" : share >= 1 - EDGE ?
 
 export class Panel {
   constructor() {
+    this.told = 0;
     this.shares = [...document.querySelectorAll(".share")].map((row) => ({
       name: row.dataset.share, bar: row.querySelector(".bar"), fill: row.querySelector("i"),
       who: row.querySelector(".who"), value: row.querySelector(".value"),
@@ -31,10 +33,16 @@ export class Panel {
 
   // `speed`: the hand's true speed [m/s].
   show(s, speed) {
+    const now = performance.now();
+    if (now - this.told > NUMBERS_MS) {
+      this.told = now;
+      this.numbers(s, speed);
+    }
     const part = s.scale < 0.995 && ["speed", "acceleration", "joint_limit", "beside"].includes(s.verdict) ? ` (× ${s.scale.toFixed(2)})` : "";
     this.say(KINDS[s.verdict] ?? "warn", s.word, s.sentence + part);
     for (const { name, bar, fill, who, value } of this.shares) {
       const share = s[name];
+      if (value.textContent === share.toFixed(2)) continue;
       fill.style.transform = `scaleX(${share})`;
       bar.setAttribute("aria-valuenow", share.toFixed(2));
       put(value, share.toFixed(2));
@@ -42,10 +50,6 @@ export class Panel {
       put(who, word);
       who.dataset.who = word;
     }
-    put($("r-hand"), `${signed(s.x_e)}, ${signed(s.y_e)} m`);
-    put($("r-base"), `${signed(s.x_b)}, ${signed(s.y_b)} m  ${signed((s.theta_b * 180) / Math.PI, 0)}°`);
-    put($("r-speed"), `${speed.toFixed(2)} m/s`);
-    put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
     $("arm").disabled = s.armed || s.stopped;
     $("reset").disabled = !s.stopped;
     $("pad").dataset.armed = s.armed;
@@ -54,8 +58,16 @@ export class Panel {
     put($("pad-hint"), hint);
   }
 
+  // The numbers are for reading: a few times a second is enough, and spares the frames a layout.
+  numbers(s, speed) {
+    put($("r-hand"), `${signed(s.x_e)}, ${signed(s.y_e)} m`);
+    put($("r-base"), `${signed(s.x_b)}, ${signed(s.y_b)} m  ${signed((s.theta_b * 180) / Math.PI, 0)}°`);
+    put($("r-speed"), `${speed.toFixed(2)} m/s`);
+    put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
+  }
+
   say(kind, word, reason) {
-    $("verdict").dataset.kind = kind;
+    if ($("verdict").dataset.kind !== kind) $("verdict").dataset.kind = kind;
     put($("verdict-word"), word);
     put($("verdict-reason"), reason);
   }

@@ -1,118 +1,132 @@
 // Four plots over the last 20 s, by the charting library that the page brings along (ECharts).
+// Each is a chart of its own and they take turns: a redraw takes milliseconds, and the view's next frame is near.
 
 import { colour, onTheme } from "./theme.js";
 
 const SPAN_S = 20;
-const SAMPLE_S = 0.05;
-const REFRESH_MS = 125;
-const ROOM = { left: 46, right: 12, height: 84, top: 26, pitch: 124 };
+const SAMPLE_S = 0.1;
+const TURN_MS = 60;
+const TURN_HELD_MS = 125; // while somebody drives, the pad goes first
+const FONT = "system-ui, sans-serif"; // a canvas knows nothing of the style sheet
 
-const PLOTS = [
-  { title: "l  [m]", series: [["l", "ink"]], limits: ["l_min", "l_max"], pad: 0.1 },
-  { title: "ψ  [rad]", series: [["psi", "ink"]], limits: ["psi_min", "psi_max"], pad: 0.2 },
-  { title: "linear  [m/s]", series: [["v_b", "base"], ["v_m", "arm"]], span: 0.5 },
-  { title: "angular  [rad/s]", series: [["w_b", "base"], ["w_m", "arm"]], span: 0.5 },
-];
-const FIELDS = PLOTS.flatMap((plot) => plot.series.map(([field]) => field));
-const SYMBOLS = { l: "l", psi: "ψ", v_b: "v_b base", v_m: "v_m arm", w_b: "w_b base", w_m: "w_m arm" };
+const PLOTS = {
+  l: { series: [["l", "ink"]], limits: ["l_min", "l_max"], pad: 0.1 },
+  psi: { series: [["psi", "ink"]], limits: ["psi_min", "psi_max"], pad: 0.2 },
+  linear: { series: [["v_b", "base"], ["v_m", "arm"]], span: 0.5 },
+  angular: { series: [["w_b", "base"], ["w_m", "arm"]], span: 0.5 },
+};
 
 export class Plots {
-  constructor(element) {
-    this.element = element;
-    this.data = Object.fromEntries(FIELDS.map((field) => [field, []]));
+  constructor(elements) {
+    this.plots = elements.map((element) => new Plot(element, PLOTS[element.dataset.plot]));
     this.last = -Infinity;
-    onTheme(() => (this.fresh = false));
-    setInterval(() => this.refresh(), REFRESH_MS);
-  }
-
-  add(state) {
-    if (state.t < this.last) this.clear();
-    if (state.t - this.last < SAMPLE_S) return;
-    this.last = state.t;
-    for (const field of FIELDS) {
-      const points = this.data[field];
-      points.push([state.t, state[field]]);
-      while (points[0][0] < state.t - SPAN_S - 1) points.shift();
-    }
-    this.changed = true;
-  }
-
-  clear() {
-    for (const field of FIELDS) this.data[field] = [];
-    this.last = -Infinity;
+    this.turn = 0;
+    onTheme(() => this.plots.forEach((plot) => (plot.fresh = false)));
+    import("nicegui-echart").then(({ echarts }) => {
+      for (const plot of this.plots) plot.library = echarts;
+    });
   }
 
   configure(settings) {
-    this.settings = settings;
-    this.fresh = false;
+    for (const plot of this.plots) {
+      plot.settings = settings;
+      plot.fresh = false;
+    }
   }
 
-  // The page's library makes the chart on our element; until it has, there is none.
-  get chart() {
-    if (!this.library) {
-      this.library = "asked";
-      import("nicegui-echart").then((module) => (this.library = module.echarts));
-    }
-    return this.library === "asked" ? undefined : this.library.getInstanceByDom(this.element);
+  add(state) {
+    if (state.t < this.last) for (const plot of this.plots) plot.clear();
+    if (state.t - this.last < SAMPLE_S && state.t >= this.last) return;
+    this.last = state.t;
+    for (const plot of this.plots) plot.add(state);
+  }
+
+  // Called when a frame has just been drawn: as far from the next one as can be.
+  afterFrame(at, held) {
+    if (at - this.turn < (held ? TURN_HELD_MS : TURN_MS)) return;
+    this.turn = at;
+    const plot = this.plots.shift();
+    this.plots.push(plot);
+    plot.refresh();
+  }
+}
+
+class Plot {
+  constructor(element, what) {
+    this.element = element;
+    this.what = what;
+    this.clear();
+  }
+
+  clear() {
+    this.data = this.what.series.map(() => []);
+    this.end = 0;
+  }
+
+  add(state) {
+    this.end = state.t;
+    this.changed = true;
+    this.what.series.forEach(([field], k) => {
+      const points = this.data[k];
+      points.push([state.t, state[field]]);
+      while (points[0][0] < state.t - SPAN_S - 1) points.shift();
+    });
   }
 
   refresh() {
-    const chart = this.chart;
+    const chart = this.library?.getInstanceByDom(this.element);
     if (!chart || !this.settings || !this.element.offsetParent) return;
-    if (!this.fresh) {
-      chart.setOption(this.frame(), { notMerge: true });
+    const range = this.vertical();
+    if (!this.fresh || range.min !== this.range.min || range.max !== this.range.max) {
+      chart.setOption(this.frame(range), { notMerge: true, silent: true });
+      this.range = range;
       this.fresh = true;
       this.changed = true;
     }
     if (!this.changed) return;
     this.changed = false;
-    const end = Number.isFinite(this.last) ? this.last : 0;
-    chart.setOption({
-      xAxis: PLOTS.map(() => ({ min: end - SPAN_S, max: end })),
-      yAxis: PLOTS.map((plot) => this.range(plot)),
-      series: FIELDS.map((field) => ({ data: this.data[field] })),
-    });
+    // Time runs to the left of now: the axes stay as they are, and only the lines are made anew.
+    const series = this.data.map((points) => ({ data: points.map(([t, value]) => [t - this.end, value]) }));
+    chart.setOption({ series }, { silent: true });
   }
 
-  range(plot) {
-    const values = plot.series.flatMap(([field]) => this.data[field].map((point) => point[1]));
-    const wanted = plot.limits ? plot.limits.map((limit) => this.settings[limit]) : [-plot.span, plot.span];
-    const pad = plot.pad ?? 0;
+  vertical() {
+    const { limits, pad = 0, span } = this.what;
+    const wanted = limits ? limits.map((limit) => this.settings[limit]) : [-span, span];
     let [min, max] = [Math.min(...wanted) - pad, Math.max(...wanted) + pad];
-    if (values.length) [min, max] = [Math.min(min, ...values), Math.max(max, ...values)];
+    for (const points of this.data) {
+      for (const [, value] of points) {
+        min = Math.min(min, value);
+        max = Math.max(max, value);
+      }
+    }
     const step = max - min > 3 ? 1 : max - min > 0.9 ? 0.5 : 0.2;
     return { min: Math.floor(min / step + 1e-9) * step, max: Math.ceil(max / step - 1e-9) * step, interval: step };
   }
 
-  frame() {
-    const [ink, muted, line] = ["ink", "muted", "line"].map(colour);
-    const text = { color: muted, fontSize: 11, fontFamily: "system-ui, sans-serif" };
+  // The limits are lines like the others, after them: a mark on a line would be laid out at every change.
+  frame(range) {
+    const [muted, line, base] = ["muted", "line", "base"].map(colour);
+    const { series, limits = [] } = this.what;
+    const plain = { type: "line", showSymbol: false, silent: true };
     return {
       animation: false,
-      title: PLOTS.map((plot, k) => ({
-        text: plot.title, left: 0, top: k * ROOM.pitch + 4, textStyle: { color: ink, fontSize: 12, fontWeight: 600, fontFamily: "system-ui, sans-serif" },
-      })),
-      legend: PLOTS.flatMap((plot, k) => plot.series.length < 2 ? [] : [{
-        data: plot.series.map(([field]) => SYMBOLS[field]), right: 8, top: k * ROOM.pitch + 1,
-        textStyle: text, itemWidth: 14, itemHeight: 2, icon: "rect", selectedMode: false,
-      }]),
-      grid: PLOTS.map((_, k) => ({ left: ROOM.left, right: ROOM.right, top: k * ROOM.pitch + ROOM.top, height: ROOM.height })),
-      xAxis: PLOTS.map((_, k) => ({
-        gridIndex: k, type: "value", axisLine: { lineStyle: { color: line } }, splitLine: { show: false }, axisTick: { show: false },
-        axisLabel: { show: false }, axisPointer: { show: false },
-      })),
-      yAxis: PLOTS.map((plot, k) => ({
-        gridIndex: k, type: "value", ...this.range(plot), splitLine: { lineStyle: { color: line, opacity: 0.6 } },
-        axisLabel: { ...text, formatter: (value) => (+value.toFixed(2)).toString() },
-      })),
-      series: PLOTS.flatMap((plot, k) => plot.series.map(([field, ink2], n) => ({
-        name: SYMBOLS[field], type: "line", xAxisIndex: k, yAxisIndex: k, showSymbol: false, silent: true, data: this.data[field],
-        lineStyle: { width: 1.8, color: colour(ink2) }, itemStyle: { color: colour(ink2) },
-        markLine: n > 0 || !plot.limits ? undefined : {
-          silent: true, symbol: "none", lineStyle: { color: colour("base"), type: "dashed", width: 1.2, opacity: 0.9 }, label: { show: false },
-          data: plot.limits.map((limit) => ({ yAxis: this.settings[limit] })),
-        },
-      }))),
+      grid: { left: 34, right: 6, top: 6, bottom: 6 },
+      xAxis: {
+        type: "value", min: -SPAN_S, max: 0, axisLine: { lineStyle: { color: line } }, splitLine: { show: false },
+        axisTick: { show: false }, axisLabel: { show: false },
+      },
+      yAxis: {
+        type: "value", ...range, splitLine: { lineStyle: { color: line, opacity: 0.6 } },
+        axisLabel: { color: muted, fontSize: 11, fontFamily: FONT, formatter: (value) => (+value.toFixed(2)).toString().replace("-", "−") },
+      },
+      series: [
+        ...series.map(([name, ink]) => ({ ...plain, name, data: [], lineStyle: { width: 1.8, color: colour(ink) } })),
+        ...limits.map((limit) => ({
+          ...plain, name: limit, lineStyle: { width: 1.2, color: base, type: "dashed" },
+          data: [[-SPAN_S, this.settings[limit]], [0, this.settings[limit]]],
+        })),
+      ],
     };
   }
 }

@@ -5,18 +5,19 @@ import { colour, onTheme } from "./theme.js";
 
 const TRAIL_STEP = 0.02; // [m]
 const TRAIL_LENGTH = 6000;
-const NAMES = ["ink", "muted", "line", "grid", "grid-major", "arm", "base", "hand", "space", "band", "panel", "stop"];
+const NAMES = ["ink", "muted", "line", "grid", "grid-major", "arm", "base", "hand", "space", "band", "panel", "stage"];
 
 export class View {
   constructor(canvas) {
     this.canvas = canvas;
-    this.paint = canvas.getContext("2d");
+    this.paint = canvas.getContext("2d", { alpha: false }); // opaque: nothing behind it is blended in
     this.scale = 150; // [px/m]
     this.centre = { x: 0.3, y: 0 };
     this.follow = true;
     this.trails = { hand: [], base: [] };
     this.dirty = true;
-    this.afterDraw = [];
+    this.afterDraw = []; // called with the state that was drawn
+    this.afterFrame = []; // called in every frame, when what there was to draw is drawn
     this.colours();
     onTheme(() => this.colours());
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -131,6 +132,7 @@ export class View {
       this.draw();
       for (const done of this.afterDraw) done(this.state);
     }
+    for (const done of this.afterFrame) done(at);
   }
 
   px(x, y) {
@@ -140,7 +142,8 @@ export class View {
   draw() {
     const g = this.paint;
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    g.clearRect(0, 0, this.w, this.h);
+    g.fillStyle = this.c.stage;
+    g.fillRect(0, 0, this.w, this.h);
     this.grid();
     if (!this.state) return;
     this.trail("base", this.c.base);
