@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from benchmarks.measure import Promise, in_turns, promise
@@ -30,10 +30,10 @@ def run() -> Iterator[Promise]:
     controller = HandController(robot.model, law)
     state = robot.read(0.0)
 
-    def law_call(l: float, blend: Blend, mount: tuple[float, float, float]) -> partial[object]:
+    def law_call(l: float, blend: Blend, mount: tuple[float, float, float]) -> Callable[[], object]:
         return partial(exact, l, 0.3, 0.3, 0.1, blend.rise, limits(blend), mount)
 
-    def step_call(theta_2: float, blend: Blend, mount: tuple[float, float, float]) -> partial[object]:
+    def step_call(theta_2: float, blend: Blend, mount: tuple[float, float, float]) -> Callable[[], object]:
         return partial(planar_step, -0.2, theta_2, 0.1, 0.2, 0.3, 0.2, blend.rise, limits(blend), mount, 0.5, 0.5)
 
     took = in_turns(

@@ -21,6 +21,10 @@ RATES = (50.0, 1000.0)
 FIFO_PRIORITY = 20
 """Above ordinary threads, below the kernel's own."""
 PARENT_LOOK_S = 0.1
+SPIN_S = 0.0004
+"""The loop wakes this long [s] before its time and looks at the clock until then: 8 % of a core at 200 Hz ..."""
+SPIN_PART = 0.1
+"""... and never more than this part of a period."""
 
 
 def real_time() -> bool:
@@ -46,7 +50,7 @@ def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -
     check_rate(rate)
     endpoint = check_endpoint(listen)
     model = load_robot(robot)
-    clock = MonotonicClock()
+    clock = MonotonicClock(min(SPIN_S, SPIN_PART / rate))
     ended = False
 
     def end(_signal: int, _frame: FrameType | None) -> None:

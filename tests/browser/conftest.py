@@ -8,14 +8,23 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
 from tests.browser.install import find
 from tests.processes import GENEROUS_S, Half, Observer, half, robot, until
 
 from overreach.link.endpoint import free_port
 from overreach.link.messages import Accepted, Configure, Reset, Restart, Stop
 
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 
 
 @dataclass
@@ -29,12 +38,16 @@ class Cockpit:
     requests: list[str]
     errors: list[str]
 
+    def _heard(self, said: ConsoleMessage) -> None:
+        if said.type == "error":
+            self.errors.append(said.text)
+
     def watch(self, page: Page) -> Page:
         """Keep what the page asks for and what goes wrong in it; open it and wait until it can be used."""
         page.set_default_timeout(GENEROUS_S * 1000)
         page.on("request", lambda request: self.requests.append(request.url))
         page.on("pageerror", lambda error: self.errors.append(str(error)))
-        page.on("console", lambda said: said.type == "error" and self.errors.append(said.text))
+        page.on("console", self._heard)
         page.goto(self.url)
         page.wait_for_function("window.overreach?.page.state && window.overreach.link.ready")
         return page

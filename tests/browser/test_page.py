@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import re
+from typing import Literal
 
 import pytest
 from playwright.sync_api import BrowserContext, Page
@@ -83,14 +84,14 @@ def test_plots_are_drawn(page: Page, cockpit: Cockpit) -> None:
             const { echarts } = await import("nicegui-echart");
             const series = [...document.querySelectorAll(".plot")]
                 .flatMap((plot) => echarts.getInstanceByDom(plot).getOption().series);
-            return {names: series.map((s) => s.name), counts: series.map((s) => s.data.length),
-                    limits: series.map((s) => (s.markLine?.data ?? []).map((m) => m.yAxis))};
+            return Object.fromEntries(series.map((s) => [s.name, s.data]));
         }"""
     )
-    assert set(chart["names"]) == {"l", "ψ", "v_b base", "v_m arm", "w_b base", "w_m arm"}
-    assert min(chart["counts"]) > 10
-    assert [0.45, 0.85] in chart["limits"]
-    assert [-0.6, 0.6] in chart["limits"]
+    for name in ("l", "psi", "v_b", "v_m", "w_b", "w_m"):
+        assert len(chart[name]) > 5, name
+    assert chart["l"][-1][1] > 0.66
+    for limit, value in (("l_min", 0.45), ("l_max", 0.85), ("psi_min", -0.6), ("psi_max", 0.6)):
+        assert [point[1] for point in chart[limit]] == [value, value]
 
 
 def test_view_follows_zooms_and_pans(page: Page, cockpit: Cockpit) -> None:
@@ -120,6 +121,7 @@ def test_view_follows_zooms_and_pans(page: Page, cockpit: Cockpit) -> None:
     until(lambda: abs(cockpit.observer.now.x_b) < 1e-9, what="the start")
 
 
+SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 SIZES = [(1360, 850), (1920, 1080), (1024, 700), (820, 1180), (390, 844), (360, 640)]
 
 
@@ -127,8 +129,9 @@ def test_layout(page: Page) -> None:
     """From phone to desktop, light and dark: nothing overflows sideways, and what drives is on the first screen."""
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
-        for scheme in ("light", "dark"):
-            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            until(lambda scheme=scheme: page.get_attribute("html", "data-theme") == scheme)  # type: ignore[misc]
             page.wait_for_timeout(50)
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), width
             for one in ("#arm", "#reset", "#stop", "#pad", "#view", "#verdict", "#authority"):
@@ -152,8 +155,9 @@ def test_texts_have_contrast(page: Page) -> None:
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
     style = "getComputedStyle(document.documentElement).getPropertyValue('--{}').trim()"
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    for scheme in SCHEMES:
+        page.emulate_media(color_scheme=scheme)
+        until(lambda scheme=scheme: page.get_attribute("html", "data-theme") == scheme)  # type: ignore[misc]
         for surface in ("panel", "bg"):
             behind = luminance(page.evaluate(style.format(surface)))
             for name in ("ink", "muted", "arm", "base", "ok", "warn", "hand"):

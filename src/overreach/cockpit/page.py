@@ -10,11 +10,12 @@ from overreach import __version__
 from overreach.cockpit.relay import Relay
 from overreach.cockpit.settings_panel import SettingsPanel
 
+_KEY = '<span><i class="k-base"></i>{0}<sub>b</sub> base <i class="k-arm"></i>{0}<sub>m</sub> arm</span>'
 PLOTS = {
     "l": "<b>l</b> m",
     "psi": "<b>ψ</b> rad",
-    "linear": '<b>linear</b> m/s <span><i class="k-base"></i>v<sub>b</sub> base <i class="k-arm"></i>v<sub>m</sub> arm</span>',
-    "angular": '<b>angular</b> rad/s <span><i class="k-base"></i>w<sub>b</sub> base <i class="k-arm"></i>w<sub>m</sub> arm</span>',
+    "linear": f"<b>linear</b> m/s {_KEY.format('v')}",
+    "angular": f"<b>angular</b> rad/s {_KEY.format('w')}",
 }
 """The plots, top to bottom, with their captions; `static/plots.js` says what is in each."""
 MARKUP = files("overreach.cockpit").joinpath("static/stage.html")
@@ -36,7 +37,9 @@ def build_page(relay: Relay) -> None:
                 with ui.element("div").props("id=plots"):
                     for name, caption in PLOTS.items():
                         ui.html(caption, sanitize=False, tag="p").classes("caption")
-                        ui.echart({}).classes("plot").props(f'data-plot="{name}" role=img aria-label="{name} over time"')
+                        ui.echart({}).classes("plot").props(
+                            f'data-plot="{name}" role=img aria-label="{name} over time"'
+                        )
             panel = SettingsPanel(relay)
     relay.on_settings.add(panel.show)
     ui.context.client.on_delete(lambda: relay.on_settings.discard(panel.show))
@@ -49,13 +52,13 @@ _AUTHORITY = """
     <span class="what">linear</span><span class="sym">μ</span>
     <span class="bar" role="meter" aria-label="base's share of linear motion" aria-valuemin="0" aria-valuemax="1"
       aria-valuenow="0"><i></i></span>
-    <b class="who">arm</b><span class="value">0.00</span>
+    <b class="who" data-who="arm">arm</b><span class="value">0.00</span>
   </div>
   <div class="share" data-share="sigma">
     <span class="what">angular</span><span class="sym">σ</span>
     <span class="bar" role="meter" aria-label="base's share of angular motion" aria-valuemin="0" aria-valuemax="1"
       aria-valuenow="0"><i></i></span>
-    <b class="who">arm</b><span class="value">0.00</span>
+    <b class="who" data-who="arm">arm</b><span class="value">0.00</span>
   </div>
 </section>
 """

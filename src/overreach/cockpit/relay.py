@@ -124,7 +124,10 @@ class Relay:
 
     async def configure(self, settings: Settings) -> Accepted | Refused:
         """Ask for other settings; every page hears of them when they are in force."""
-        return await self.ask(Configure(settings))
+        answer = await self.ask(Configure(settings))
+        if isinstance(answer, Accepted):
+            self.settings = settings
+        return answer
 
     async def serve(self, socket: WebSocket) -> None:
         """Talk with one page until it goes; then its robot is let go of."""

@@ -10,7 +10,7 @@ from nicegui import ui
 
 from overreach.cockpit.relay import Relay
 from overreach.law.blend import BLENDS
-from overreach.link.messages import Refused, Settings
+from overreach.link.messages import Accepted, Refused, Settings
 from overreach.plugs import LAWS, names
 from overreach.types import Frame
 
@@ -26,6 +26,8 @@ class SettingsPanel:
         self._relay = relay
         self._shown = relay.settings
         self._quiet = False
+        self._asking = False
+        self._wanted: dict[str, Any] = {}
         with ui.element("section").classes("card").props('id=settings aria-label="Settings"'):
             ui.html("<h2>Settings</h2>", sanitize=False)
             with ui.element("div").classes("choices"):
@@ -93,22 +95,33 @@ class SettingsPanel:
         return changed
 
     async def _ask(self, changes: dict[str, Any]) -> None:
-        """Ask for the settings in force with `changes`."""
-        wanted = msgspec.structs.replace(self._relay.settings, **changes)
-        if wanted == self._relay.settings:
+        """Ask for the settings in force with `changes`. One question at a time; what comes meanwhile is added up."""
+        self._wanted |= changes
+        if self._asking:
             return
-        answer = await self._relay.configure(wanted)
+        self._asking = True
+        try:
+            while self._wanted:
+                wanted = msgspec.structs.replace(self._relay.settings, **self._wanted)
+                self._wanted = {}
+                if wanted != self._relay.settings:
+                    self._tell(await self._relay.configure(wanted))
+        finally:
+            self._asking = False
+        self.show(self._relay.settings)
+
+    def _tell(self, answer: Accepted | Refused) -> None:
         if isinstance(answer, Refused):
             ui.notify(answer.reason, type="warning", position="top")
-            self.show(self._relay.settings)
 
     async def _defaults(self) -> None:
-        answer = await self._relay.configure(self._relay.welcome.settings)
-        if isinstance(answer, Refused):
-            ui.notify(answer.reason, type="warning", position="top")
+        self._tell(await self._relay.configure(self._relay.welcome.settings))
+        self.show(self._relay.settings)
 
     def show(self, settings: Settings) -> None:
-        """Show `settings`, which are in force."""
+        """Show `settings`, which are in force; not while this visitor's own hand is on a control."""
+        if self._asking:
+            return
         self._quiet = True
         self._shown = settings
         self._law.value = settings.law

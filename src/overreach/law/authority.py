@@ -120,8 +120,7 @@ def exact(
             if eta > pi or eta < -pi:
                 eta -= copysign(2.0 * pi, eta)
             length_2 = k_t * k_t + k_r * k_r
-            if length_2 < LEVER_MIN_2 * l * l:
-                length_2 = LEVER_MIN_2 * l * l
+            length_2 = max(length_2, LEVER_MIN_2 * l * l)
             w_l = v_b * g * (2.0 * eta / sqrt(length_2) - (k_t * u_t + k_r * u_r) / (sqrt(speed_2) * length_2))
 
     # sigma depends on the sign of w_des, the bearing rate that is left to the arm if the base only drives and

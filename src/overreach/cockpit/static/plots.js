@@ -113,11 +113,11 @@ class Plot {
       animation: false,
       grid: { left: 34, right: 6, top: 6, bottom: 6 },
       xAxis: {
-        type: "value", min: -SPAN_S, max: 0, axisLine: { lineStyle: { color: line } }, splitLine: { show: false },
+        type: "value", min: -SPAN_S, max: 0, axisLine: { onZero: false, lineStyle: { color: line } }, splitLine: { show: false },
         axisTick: { show: false }, axisLabel: { show: false },
       },
       yAxis: {
-        type: "value", ...range, splitLine: { lineStyle: { color: line, opacity: 0.6 } },
+        type: "value", ...range, axisLine: { show: false }, axisTick: { show: false }, splitLine: { lineStyle: { color: line, opacity: 0.6 } },
         axisLabel: { color: muted, fontSize: 11, fontFamily: FONT, formatter: (value) => (+value.toFixed(2)).toString().replace("-", "−") },
       },
       series: [

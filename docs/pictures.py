@@ -1,0 +1,41 @@
+"""Make the README's picture of the page: `python docs/pictures.py`. It is what the page looks like, not a drawing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from overreach.link.endpoint import free_port
+from tests.browser.conftest import FLAGS
+from tests.browser.install import find
+from tests.processes import half
+
+HERE = Path(__file__).parent / "img"
+WAY = ((0, -76, 3.4), (-46, -60, 2.4), (42, -64, 3.2))
+"""Where the pad is held, in px from its centre, and for how long [s]."""
+
+
+def main() -> None:
+    """Drive a little and take the picture."""
+    HERE.mkdir(exist_ok=True)
+    with half("drive", "--no-browser", "--port", str(free_port())) as drive, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=find(), args=FLAGS)
+        page = browser.new_page(viewport={"width": 1360, "height": 800}, color_scheme="light")
+        page.goto(drive.url())
+        page.wait_for_function("window.overreach?.page.state")
+        page.click("#arm")
+        box = page.locator("#pad").bounding_box()
+        assert box
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        page.mouse.move(x, y)
+        page.mouse.down()
+        for dx, dy, seconds in WAY:
+            page.mouse.move(x + dx, y + dy, steps=8)
+            page.wait_for_timeout(seconds * 1_000)
+        page.screenshot(path=HERE / "cockpit.png")
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+import math
+import random
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from overreach.arm.planar import inverse
+from overreach.control import HandController
+from overreach.law.blend import step
+from overreach.law.laws import exact, paper, switch
+from overreach.law.workspace import Workspace
+from overreach.model.planar import Arm2R, PlanarRobot
+from overreach.robots.kinematic import KinematicRobot
+from overreach.types import Frame, Verdict
+from tests.strategies import speeds
+
+DT = 0.005
+
+
+@settings(max_examples=60)
+@given(st.sampled_from(["exact", "paper", "switch"]), st.integers(0, 10**6))
+def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
+    """Under any commands and any law, base and joints keep their limits of speed and acceleration, always."""
+    law = {"exact": exact, "paper": paper, "switch": switch}[name]()
+    robot = KinematicRobot()
+    controller = HandController(robot.model, law)
+    arm, base = robot.model.arm, robot.model.base
+    chance = random.Random(seed)
+    rates = [(0.0, 0.0, 0.0, 0.0)]
+    v_c = w_c = 0.0
+    for k in range(1500):
+        if k % 100 == 0:
+            v_c, w_c = chance.uniform(-0.4, 0.4), chance.uniform(-0.4, 0.4)
+        state = robot.read(k * DT)
+        done = controller.step(state, v_c, w_c, DT)
+        robot.write(done.twist, done.dtheta, k * DT)
+        rates.append((done.split.v_b, done.split.w_b, *done.dtheta))
+        for angle, least, most in zip(state.theta, arm.theta_min, arm.theta_max, strict=True):
+            assert least - 1e-3 <= angle <= most + 1e-3
+    fastest = (base.v_max, base.w_max, *arm.dtheta_max)
+    change = (base.dv_max, base.dw_max, *arm.ddtheta_max)
+    for before, after in pairwise(rates):
+        for was, is_, top, most in zip(before, after, fastest, change, strict=True):
+            assert abs(is_) <= top * (1 + 1e-6)
+            assert abs(is_ - was) <= most * DT * (1 + 1e-6)
+
+
+def test_limits_keep_the_hands_direction() -> None:
+    """Where a limit slows the hand, it still goes where it was sent: the command is scaled, never one part of it."""
+    slow = PlanarRobot(arm=Arm2R(dtheta_max=(0.3, 0.3)))
+    robot = KinematicRobot(slow, psi=0.2)
+    controller = HandController(slow, exact())
+    start = robot.read(0.0)
+    heading = controller.locate(start).theta_e
+    places = []
+    scaled = False
+    for k in range(2000):
+        done = controller.step(robot.read(k * DT), 0.4, 0.0, DT)
+        robot.write(done.twist, done.dtheta, k * DT)
+        scaled = scaled or (done.scale < 0.9 and done.verdict is Verdict.SPEED)
+        state = robot.true
+        turn = state.theta_b + state.theta[0]
+        x = state.x_b + 0.5 * math.cos(turn) + 0.5 * math.cos(turn + state.theta[1])
+        y = state.y_b + 0.5 * math.sin(turn) + 0.5 * math.sin(turn + state.theta[1])
+        places.append((x, y))
+    assert scaled
+    x0, y0 = places[0]
+    away = max(abs((y - y0) * math.cos(heading) - (x - x0) * math.sin(heading)) for x, y in places)
+    assert math.dist(places[0], places[-1]) > 2.0
+    assert away < 2e-3
+
+
+def test_joint_limit_brakes_and_backs_out() -> None:
+    """At a joint's limit the hand stops without passing it, says why, and can go back."""
+    tight = PlanarRobot(arm=Arm2R(theta_min=(-4.8, 1.2), theta_max=(4.8, 2.5)), workspace=Workspace(0.5, 0.95))
+    robot = KinematicRobot(tight, l=0.7)
+    controller = HandController(tight, exact(tight.workspace, step()))
+    verdicts = set()
+    for k in range(600):
+        done = controller.step(robot.read(k * DT), 0.3, 0.0, DT)
+        robot.write(done.twist, done.dtheta, k * DT)
+        verdicts.add(done.verdict)
+        assert robot.true.theta[1] >= 1.2 - 1e-3
+    assert Verdict.JOINT_LIMIT in verdicts
+    stuck = robot.true.theta[1]
+    assert stuck == pytest.approx(1.2, abs=0.02)
+    for k in range(600, 900):
+        done = controller.step(robot.read(k * DT), -0.3, 0.0, DT)
+        robot.write(done.twist, done.dtheta, k * DT)
+    assert robot.true.theta[1] > stuck + 0.3
+
+
+@given(speeds, speeds)
+def test_at_rest_nothing_moves(v_c: float, w_c: float) -> None:
+    """A zero command gives zero rates, in every frame and pose, also just after another command."""
+    robot = KinematicRobot()
+    for frame in Frame:
+        controller = HandController(robot.model, exact(), frame, limited=False)
+        controller.step(robot.read(0.0), v_c, w_c, DT)
+        controller.restart()
+        done = controller.step(robot.read(0.0), 0.0, 0.0, DT)
+        assert (done.split.v_b, done.split.w_b, *done.dtheta) == (0.0, 0.0, 0.0, 0.0)
+
+
+def test_changing_the_frame_starts_the_heading_anew() -> None:
+    """The hand's heading turns at w_c, stays over a change of law, and begins at its bearing with a change of frame."""
+    robot = KinematicRobot(psi=0.3)
+    controller = HandController(robot.model, exact(), limited=False)
+    assert controller.locate(robot.true).theta_e == pytest.approx(0.3)
+    for _ in range(100):
+        controller.step(robot.true, 0.0, 0.4, DT)
+    assert controller.locate(robot.true).theta_e == pytest.approx(0.5)
+    controller.configure(paper(), Frame.HAND)
+    assert controller.locate(robot.true).theta_e == pytest.approx(0.5)
+    controller.configure(paper(), Frame.POLAR)
+    controller.configure(exact(), Frame.HAND)
+    assert controller.locate(robot.true).theta_e == pytest.approx(0.3)
+
+
+def test_inside_the_workspace_only_the_arm_moves() -> None:
+    """A reach of 10 cm inside the workspace moves the base by nothing at all."""
+    robot = KinematicRobot()
+    controller = HandController(robot.model, exact())
+    for k in range(100):
+        done = controller.step(robot.read(k * DT), 0.2, 0.0, DT)
+        robot.write(done.twist, done.dtheta, k * DT)
+    state = robot.read(0.5)
+    assert (state.x_b, state.y_b, state.theta_b) == (0.0, 0.0, 0.0)
+    assert state.theta != inverse(0.65, 0.0, 0.5, 0.5, 1)
