@@ -7,6 +7,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.strategies import speeds
 
 from overreach.arm.planar import inverse
 from overreach.control import HandController
@@ -16,7 +17,6 @@ from overreach.law.workspace import Workspace
 from overreach.model.planar import Arm2R, PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Frame, Verdict
-from tests.strategies import speeds
 
 DT = 0.005
 
