@@ -8,12 +8,12 @@ import os
 from collections.abc import Iterator
 
 from playwright.sync_api import sync_playwright
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
-from tests.processes import Observer, half, robot
 
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
+from tests.browser.conftest import FLAGS
+from tests.browser.install import find
+from tests.processes import Observer, half, robot
 
 SECONDS = 20
 

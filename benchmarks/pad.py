@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from playwright.sync_api import sync_playwright
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
-from tests.processes import half
 
 from benchmarks.measure import Promise, percentile
 from overreach.link.endpoint import free_port
+from tests.browser.conftest import FLAGS
+from tests.browser.install import find
+from tests.processes import half
 
 STEPS = 200
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import psutil
 from playwright.sync_api import sync_playwright
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
-from tests.processes import half
 
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
+from tests.browser.conftest import FLAGS
+from tests.browser.install import find
+from tests.processes import half
 
 SECONDS = 4
 ROUNDS = 5

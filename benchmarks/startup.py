@@ -8,12 +8,12 @@ import time
 from collections.abc import Iterator
 
 from playwright.sync_api import sync_playwright
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
-from tests.processes import half
 
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
+from tests.browser.conftest import FLAGS
+from tests.browser.install import find
+from tests.processes import half
 
 
 def run() -> Iterator[Promise]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
+
+from overreach.link.endpoint import free_port
 from tests.browser.conftest import FLAGS
 from tests.browser.install import find
 from tests.processes import half
-
-from overreach.link.endpoint import free_port
 
 HERE = Path(__file__).parent / "img"
 WAY = ((0, -76, 3.4), (-46, -60, 2.4), (42, -64, 3.2))

@@ -7,7 +7,6 @@ from itertools import pairwise
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.strategies import speeds
 
 from overreach.arm.planar import inverse
 from overreach.control import HandController
@@ -17,6 +16,7 @@ from overreach.law.workspace import Workspace
 from overreach.model.planar import Arm2R, PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Frame, Verdict
+from tests.strategies import speeds
 
 DT = 0.005
 
@@ -30,7 +30,7 @@ def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
     controller = HandController(robot.model, law)
     arm, base = robot.model.arm, robot.model.base
     chance = random.Random(seed)
-    rates = [(0.0, 0.0, 0.0, 0.0)]
+    rates: list[tuple[float, ...]] = [(0.0, 0.0, 0.0, 0.0)]
     v_c = w_c = 0.0
     for k in range(1500):
         if k % 100 == 0:

@@ -5,7 +5,6 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.strategies import angles
 
 from overreach.arm.limits import fastest_towards
 from overreach.arm.planar import (
@@ -20,6 +19,7 @@ from overreach.arm.planar import (
     wrap,
 )
 from overreach.types import Verdict
+from tests.strategies import angles
 
 links = st.floats(0.1, 1.5)
 elbows = st.sampled_from([-1, 1])

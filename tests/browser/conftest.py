@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
-from tests.browser.install import find
-from tests.processes import GENEROUS_S, Half, Observer, half, robot, until
 
 from overreach.link.endpoint import free_port
 from overreach.link.messages import Accepted, Configure, Reset, Restart, Stop
+from tests.browser.install import find
+from tests.processes import GENEROUS_S, Half, Observer, half, robot, until
 
 FLAGS = [
     "--headless",

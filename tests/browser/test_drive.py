@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import BrowserContext, CDPSession, Page
+
 from tests.browser.conftest import Cockpit
 from tests.processes import Observer, until
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 import pytest
 from playwright.sync_api import BrowserContext, Page
+
 from tests.browser.conftest import Cockpit
 from tests.browser.test_drive import arm
 from tests.processes import until

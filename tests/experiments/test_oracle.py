@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.special import wrightomega
-from tests.strategies import angles, bearings, speeds
 
 from overreach.arm.planar import hand_in_world, inverse
 from overreach.control import HandController
@@ -23,6 +22,7 @@ from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import BaseTwist, Frame, RobotState
+from tests.strategies import angles, bearings, speeds
 
 V = 0.4
 

@@ -9,9 +9,9 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from tests.processes import Driver, Half, gone, half, port_is_free, robot, until
 
 from overreach.link.endpoint import free_port
+from tests.processes import Driver, Half, gone, half, port_is_free, robot, until
 
 
 def ports_of(drive: Half, url: str) -> list[int]:

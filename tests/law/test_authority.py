@@ -5,12 +5,12 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.strategies import MOUNT_FREE, WORKSPACE, bearings, blends, lengths, limits_of, mounts, speeds
 
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep, step, tanh
 from overreach.law.laws import Law, exact, paper, switch
 from overreach.law.workspace import Mount
+from tests.strategies import MOUNT_FREE, WORKSPACE, bearings, blends, lengths, limits_of, mounts, speeds
 
 TINY = 1e-12
 

@@ -5,10 +5,10 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.strategies import blends
 
 from overreach.errors import SetupError, UnknownNameError
 from overreach.law.blend import Blend, blend_from, rise_smoothstep, rise_step, rise_tanh, smoothstep, step, tanh
+from tests.strategies import blends
 
 distances = st.floats(-2.0, 2.0)
 

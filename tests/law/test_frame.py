@@ -4,10 +4,10 @@ import math
 
 import pytest
 from hypothesis import given
-from tests.strategies import angles, lengths, speeds
 
 from overreach.law.frame import FRAMES, heading_rate
 from overreach.types import Frame
+from tests.strategies import angles, lengths, speeds
 
 
 @given(lengths, angles, angles, angles, speeds, speeds)

@@ -5,7 +5,6 @@ import time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.processes import Driver, half, robot, until
 
 from overreach.errors import LinkError, SetupError
 from overreach.link import messages
@@ -13,6 +12,7 @@ from overreach.link.endpoint import check_endpoint, free_port, open_session
 from overreach.link.messages import KEY_HELLO, KEY_REQUEST, KEY_STICK, Accepted, Configure, Hello, Refused, Settings
 from overreach.link.operator_end import OperatorEnd
 from overreach.types import Stick
+from tests.processes import Driver, half, robot, until
 
 
 @given(st.builds(Stick, st.integers(0, 2**53), st.integers(0, 2**53), st.integers(0, 2**31), st.booleans(),

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
-from tests.strategies import angles
 
 from overreach.errors import SetupError, WorkspaceError
 from overreach.model.planar import load_planar
@@ -16,6 +15,7 @@ from overreach.robots.arc import arc
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import BaseTwist
+from tests.strategies import angles
 
 REST = (0.0, 0.0)
 
