@@ -126,6 +126,6 @@ def test_the_hard_switch_chatters_where_a_blend_does_not() -> None:
     def jumps(rows: list[Row]) -> list[float]:
         return [abs(after.v_b - before.v_b) for before, after in pairwise(rows)]
 
-    assert max(jumps(hard)) == pytest.approx(0.05)
+    assert max(jumps(hard)) == pytest.approx(0.05, rel=1e-3)
     assert max(jumps(soft)) < 0.02
     assert sum(jumps(hard)) > 1.5 * sum(jumps(soft))

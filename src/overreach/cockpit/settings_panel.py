@@ -30,10 +30,9 @@ class SettingsPanel:
         self._wanted: dict[str, Any] = {}
         with ui.element("section").classes("card").props('id=settings aria-label="Settings"'):
             ui.html("<h2>Settings</h2>", sanitize=False)
-            with ui.element("div").classes("choices"):
-                self._law = self._select("law", "Law", names(LAWS))
-                self._frame = self._select("frame", "Command frame", [frame.value for frame in Frame])
-                self._blend = self._select("blend", "Blend", list(BLENDS))
+            self._law = self._select("law", "Law", names(LAWS))
+            self._frame = self._toggle("frame", "Command frame", [frame.value for frame in Frame])
+            self._blend = self._toggle("blend", "Blend", list(BLENDS))
             self._speed = self._slider("speed_scale", "Speed", 0.05, 1.0, 0.05, "×")
             self._tanh = ui.element("div").classes("group")
             with self._tanh:
@@ -53,6 +52,12 @@ class SettingsPanel:
     def _select(self, field: str, label: str, options: list[str]) -> ui.select:
         return ui.select(options, label=label, value=getattr(self._shown, field), on_change=self._handler(field)).props(
             f'outlined dense options-dense id="set-{field}"'
+        )
+
+    def _toggle(self, field: str, label: str, options: list[str]) -> ui.toggle:
+        ui.label(label).classes("line")
+        return ui.toggle(options, value=getattr(self._shown, field), on_change=self._handler(field)).props(
+            f'unelevated no-caps spread id="set-{field}" aria-label="{label}"'
         )
 
     def _line(self, label: str, unit: str) -> ui.label:
