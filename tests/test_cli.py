@@ -91,6 +91,8 @@ def test_simulate_prints_a_table() -> None:
         (["robot", "--listen", "nonsense"], "HOST:PORT"),
         (["robot", "--rate", "5"], "50 to 1000 Hz"),
         (["drive", "--rate", "nan"], "50 to 1000 Hz"),
+        (["drive", "--host", ""], "--host must be"),
+        (["drive", "plannar"], "Did you mean 'planar'"),
         (["drive", "--port", "99999"], "1 to 65535"),
         (["drive", "--host", "203.0.113.7", "--port", "8431"], "an address of this machine"),
         (["cockpit", "--connect", "127.0.0.1:0"], "HOST:PORT"),

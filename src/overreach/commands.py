@@ -13,7 +13,7 @@ app = SubcommandApp()
 
 @app.command
 def drive(
-    robot: str = "planar",
+    robot: Annotated[str, tyro.conf.Positional] = "planar",
     port: int | None = None,
     host: str = "127.0.0.1",
     rate: float = 200.0,

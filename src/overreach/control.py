@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import final
 
 from overreach.arm.limits import fastest_joints
-from overreach.arm.planar import forward, joint_rates_over, polar_to_joint_rates, wrap
+from overreach.arm.planar import forward, joint_rates_over, polar_rates, polar_to_joint_rates, wrap
 from overreach.gate.limits import clamp_change, feasible_scale
 from overreach.law.authority import arm_residual
 from overreach.law.frame import FRAMES, heading_rate
@@ -61,7 +61,7 @@ class HandController:
         self.configure(law, frame)
 
     def configure(self, law: Law, frame: Frame | None = None) -> None:
-        """Change the law and the command frame; the hand's heading starts anew at its bearing."""
+        """Change the law and the command frame; with another frame the hand's heading starts anew at its bearing."""
         chosen = frame or law.frame
         if getattr(self, "frame", None) is not chosen:
             self._theta_e = None
@@ -173,5 +173,6 @@ class HandController:
         one = clamp_change(one, self._asked[2], steps[0])
         two = clamp_change(two, self._asked[3], steps[1])
         most = fastest_joints(arm, state.theta, (one, two), dt)
-        held = tuple(max(-top, min(top, rate)) for rate, top in zip((one, two), most, strict=True))
-        return held, v_m, w_m, verdict
+        one, two = (max(-top, min(top, rate)) for rate, top in zip((one, two), most, strict=True))
+        v_m, w_m = polar_rates(state.theta[1], one, two, *arm.links)  # what the joints really give
+        return (one, two), v_m, w_m, verdict

@@ -5,7 +5,6 @@
     │   ├── WorkspaceError            limits of the workspace out of order or out of reach
     │   ├── ScenarioError             a scenario file that cannot be run
     │   └── UnknownNameError          a name that nothing answers to
-    ├── MissingExtraError             an optional dependency is not installed
     └── LinkError                     the other half cannot be reached or does not fit
 
 Each message is one line: what was wrong, what was got, what is valid, what to do.
@@ -15,6 +14,9 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+
+LONGEST_NAME = 60
+"""A name longer than this is cut before it is compared and shown."""
 
 
 class OverreachError(Exception):
@@ -36,18 +38,12 @@ class ScenarioError(SetupError):
 class UnknownNameError(SetupError):
     """A name is not one of the valid choices; the message suggests the nearest."""
 
-    def __init__(self, kind: str, got: str, valid: Iterable[str]) -> None:
+    def __init__(self, kind: str, got: str, valid: Iterable[str], more: str = "") -> None:
         self.valid = sorted(valid)
+        got = got if len(got) <= LONGEST_NAME else f"{got[:LONGEST_NAME]}..."
         near = difflib.get_close_matches(got, self.valid, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        super().__init__(f"unknown {kind} {got!r}.{hint} Valid: {', '.join(self.valid)}.")
-
-
-class MissingExtraError(OverreachError):
-    """An optional dependency is missing; the message holds the pip line that brings it."""
-
-    def __init__(self, what: str, extra: str) -> None:
-        super().__init__(f"{what} is not installed: pip install 'overreach[{extra}]'")
+        super().__init__(f"unknown {kind} {got!r}.{hint} Valid: {', '.join(self.valid)}.{more and ' '}{more}")
 
 
 class LinkError(OverreachError):

@@ -10,7 +10,7 @@ from overreach import __version__
 from overreach.arm.planar import hand_in_world
 from overreach.clock import Clock
 from overreach.control import HandController, Step
-from overreach.errors import OverreachError
+from overreach.errors import OverreachError, SetupError
 from overreach.gate.gate import STALE_S, Gate, Gated
 from overreach.law.blend import blend_from
 from overreach.law.laws import Law
@@ -37,7 +37,7 @@ from overreach.model.planar import PlanarRobot
 from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.timing import Lateness
-from overreach.types import Frame, RobotState, Verdict
+from overreach.types import RobotState, Verdict
 
 STATE_PERIOD_S = 1.0 / 60.0
 """A state is sent when a stick was accepted, and at the latest after this [s]."""
@@ -60,7 +60,8 @@ class Loop:
         self._clock = clock
         space = model.workspace
         self.settings = Settings(l_min=space.l_min, l_max=space.l_max, psi_min=space.psi_min, psi_max=space.psi_max)
-        self.controller = HandController(model, self._law(self.settings), Frame(self.settings.frame))
+        self.controller = HandController(model, self._law(self.settings), self.settings.frame)
+        self._defaults = self.settings
         self._revision = 0
         self._tick = 0
         self._sent_at = -inf
@@ -87,11 +88,11 @@ class Loop:
 
     def tick(self, now: float, dt: float) -> None:
         """Do one period: robot and link in, gate, law and arm, robot and link out."""
-        state = self._robot.read(now)
         self._serve(now)
+        state = self._robot.read(now)
         stick = self._link.newest_stick()
         refusal = self.gate.accept(stick, now) if stick else None
-        gated = self.gate.tick(now, dt, refusal)
+        gated = self.gate.tick(now, dt)
         step = self.controller.step(state, gated.v_c, gated.w_c, dt)
         self._robot.write(step.twist, step.dtheta, now)
         self._tick += 1
@@ -108,6 +109,9 @@ class Loop:
                 answer(self._carry_out(request, now))
             except OverreachError as error:
                 answer(Refused(str(error)))
+            except Exception as error:  # a law that is a plug-in may raise anything: the loop goes on
+                self.gate.latch.stop()
+                answer(Refused(f"Stopped: {type(error).__name__} in the robot side: {error}"))
 
     def _carry_out(self, request: Request, now: float) -> Answer:
         latch = self.gate.latch
@@ -116,11 +120,16 @@ class Loop:
                 latch.stop()
             case Reset():
                 latch.reset()
-            case Disarm():
+            case Disarm(operator):
+                if latch.armed and operator != latch.operator:
+                    return Refused("Another operator has armed the robot. Stop is always possible.")
                 latch.disarm()
-            case Arm(operator):
-                if not self.gate.arm(operator):
-                    return Refused("Stopped: press Reset first.")
+            case Arm(operator, grip):
+                match self.gate.arm(operator, grip, now):
+                    case Verdict.STOPPED:
+                        return Refused("Stopped: press Reset first.")
+                    case Verdict.OTHER_OPERATOR:
+                        return Refused("Another operator is driving. Stop is always possible.")
             case Restart():
                 if latch.armed or not self.gate.resting:
                     return Refused("Disarm first, and wait until the robot stands still.")
@@ -138,7 +147,9 @@ class Loop:
 
     def _configure(self, settings: Settings) -> None:
         """Use `settings`; raises SetupError, with nothing changed, where they cannot be used."""
-        law, frame = self._law(settings), Frame(settings.frame)
+        if settings.frame is not self.controller.frame and not self.gate.resting:
+            raise SetupError("Let go first: what the stick means does not change in motion.")
+        law, frame = self._law(settings), settings.frame
         self.gate.set_speed_scale(settings.speed_scale)
         self.controller.configure(law, frame)
         self.settings = settings
@@ -165,6 +176,8 @@ class Loop:
             stop_time=STALE_S + 1.0 / self.rate + max(limits.v_c / limits.dv_c, limits.w_c / limits.dw_c),
             simulated=True,
             settings=self.settings,
+            defaults=self._defaults,
+            revision=self._revision,
         )
 
     def _report(self, now: float, state: RobotState, gated: Gated, step: Step) -> State:

@@ -41,7 +41,7 @@ class Verdict(enum.StrEnum):
 
     STOPPED = "stopped", "Stopped", "Press Reset, then Arm."
     DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad."
-    LOST = "lost", "Link lost", "No command for 1 s: disarmed. Let go and press again."
+    LOST = "lost", "Link lost", "No command for 1 s. Let go and press again."
     REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again."
     STALE = "stale", "Link slow", "No command for 200 ms: slowing down."
     NOT_FINITE = "not_finite", "Refused", "A command held a value that is not finite."
@@ -68,7 +68,7 @@ class Command(Record, frozen=True):
     w_c: float = 0.0
 
 
-class Stick(Record, frozen=True):
+class Stick(Record, frozen=True, forbid_unknown_fields=True):
     """One message of the operator's: the whole state of stick and dead-man.
 
     operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held:

@@ -111,14 +111,17 @@ def test_keyboard(page: Page, cockpit: Cockpit) -> None:
         page.keyboard.up(key)
 
 
+FAKE_GAMEPAD = """
+    window.fake = {connected: true, mapping: "standard", axes: [0, 0, 0, 0],
+                   buttons: Array.from({length: 17}, () => ({pressed: false, value: 0}))};
+    navigator.getGamepads = () => [null, window.fake];
+"""
+
+
 def test_gamepad(context: BrowserContext, cockpit: Cockpit) -> None:
     """The left stick of a gamepad drives, Start arms, B stops, and pulling its plug lets go."""
     page = context.new_page()
-    page.add_init_script(
-        """window.fake = {connected: true, axes: [0, 0, 0, 0],
-             buttons: Array.from({length: 17}, () => ({pressed: false, value: 0}))};
-           navigator.getGamepads = () => [null, window.fake];"""
-    )
+    page.add_init_script(FAKE_GAMEPAD)
     cockpit.watch(page)
     page.evaluate("fake.buttons[9].pressed = true")
     until(lambda: cockpit.observer.now.armed, what="armed")
@@ -216,7 +219,7 @@ def test_nothing_moves_before_arming(page: Page, cockpit: Cockpit) -> None:
     page.mouse.up()
 
 
-@pytest.mark.parametrize("how", ["button", "Escape", "Space"])
+@pytest.mark.parametrize("how", ["button", "Escape", "Space", "Control+Escape"])
 def test_stop_is_latched_on_the_page(page: Page, cockpit: Cockpit, how: str) -> None:
     """Stop, by button or key, stops and holds; Reset moves nothing; Arm and a new press are needed to go on."""
     observer = cockpit.observer
@@ -242,12 +245,75 @@ def test_stop_is_latched_on_the_page(page: Page, cockpit: Cockpit, how: str) -> 
 
 
 def test_two_pages_one_operator(page: Page, context: BrowserContext, cockpit: Cockpit) -> None:
-    """The page that armed drives; a second page is refused, and may stop the robot."""
+    """The page that armed drives; a second page watches, and may stop the robot. A page that goes disarms."""
     arm(page, cockpit.observer)
     other = cockpit.watch(context.new_page())
+    until(lambda: other.inner_text("#verdict-word") == "Watching", what="the word")
     other.keyboard.down("ArrowUp")
     until(lambda: cockpit.observer.now.verdict == "other_operator", what="the refusal")
     assert cockpit.observer.speed() == 0.0
     other.keyboard.up("ArrowUp")
+    page.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.speed() > 0.3, what="the first page's drive")
     other.click("#stop")
+    until(lambda: cockpit.observer.now.stopped, what="the stop")
+    other.click("#reset")
+    arm(other, cockpit.observer)
+    other.close()
+    until(lambda: not cockpit.observer.now.armed, what="the disarming")
+
+
+def test_a_reloaded_page_must_press_again(page: Page, cockpit: Cockpit) -> None:
+    """A key that is held while the robot is armed moves nothing: only a press after arming does."""
+    page.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.now.ack > 3, what="sticks")
+    page.evaluate("overreach.buttons.arm()")
+    until(lambda: cockpit.observer.now.verdict == "regrip", what="the demand for a new press")
+    assert cockpit.observer.speed() == 0.0
+    page.keyboard.up("ArrowUp")
+
+
+@pytest.mark.parametrize("way", ["blur", "offline", "hidden"])
+def test_a_gamepad_that_was_let_go_of_must_come_to_its_centre(
+    context: BrowserContext, cockpit: Cockpit, way: str
+) -> None:
+    """A stick that is still tilted after the page has let go does not take hold again by itself."""
+    page = context.new_page()
+    page.add_init_script(FAKE_GAMEPAD)
+    cockpit.watch(page)
+    arm(page, cockpit.observer)
+    page.wait_for_timeout(100)
+    page.evaluate("fake.axes[1] = -1")
+    until(lambda: cockpit.observer.speed() > 0.39, what="full speed")
+    if way == "hidden":
+        page.evaluate("Object.defineProperty(document, 'hidden', {value: true})")
+        page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
+    else:
+        page.evaluate(f"window.dispatchEvent(new Event('{way}'))")
+    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+    page.wait_for_timeout(300)
+    assert cockpit.observer.speed() == 0.0
+    page.evaluate("fake.axes[1] = 0")
+    page.wait_for_timeout(100)
+    if way != "hidden":
+        page.evaluate("fake.axes[1] = -1")
+        until(lambda: cockpit.observer.speed() > 0.3, what="motion after the centre")
+        page.evaluate("fake.axes[1] = 0")
+
+
+def test_keys_let_go_with_ctrl_or_meta(page: Page, cockpit: Cockpit) -> None:
+    """A modifier lets go of all keys, as some systems never tell of keys that come up while it is down."""
+    arm(page, cockpit.observer)
+    page.keyboard.down("ArrowUp")
+    until(lambda: cockpit.observer.speed() > 0.3, what="motion")
+    page.keyboard.down("Meta")
+    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+    page.keyboard.up("Meta")
+    page.keyboard.up("ArrowUp")
+
+
+def test_a_stop_outlives_a_lost_connection(page: Page, cockpit: Cockpit) -> None:
+    """A stop that is pressed while the page has no connection reaches the robot when it has one again."""
+    arm(page, cockpit.observer)
+    page.evaluate("overreach.link.socket.close(); overreach.buttons.stop()")
     until(lambda: cockpit.observer.now.stopped, what="the stop")

@@ -222,7 +222,17 @@ def test_the_own_origin_gets_in(cockpit: Cockpit) -> None:
     assert upgrade(cockpit.url, {"Origin": cockpit.url}) == 101
 
 
-def upgrade(url: str, headers: dict[str, str]) -> int:
+def test_foreign_hosts_get_nothing(cockpit: Cockpit) -> None:
+    """No page, file or socket is served under a name that a foreign site may have pointed here."""
+    for path in ("/", "/static/main.js", "/_nicegui_ws/socket.io/"):
+        connection = http.client.HTTPConnection(cockpit.url.removeprefix("http://"), timeout=10)
+        connection.request("GET", path, headers={"Host": "evil.example"})
+        assert connection.getresponse().status == 403, path
+        connection.close()
+    assert upgrade(cockpit.url, {"Origin": "http://evil.example"}, "/_nicegui_ws/socket.io/?transport=websocket") == 403
+
+
+def upgrade(url: str, headers: dict[str, str], path: str = "/ws") -> int:
     """Ask for a WebSocket and return the status of the answer."""
     connection = http.client.HTTPConnection(url.removeprefix("http://"), timeout=10)
     try:
@@ -232,7 +242,7 @@ def upgrade(url: str, headers: dict[str, str]) -> int:
             "Sec-WebSocket-Version": "13",
             "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
         }
-        connection.request("GET", "/ws", headers={**handshake, **headers})
+        connection.request("GET", path, headers={**handshake, **headers})
         return connection.getresponse().status
     finally:
         connection.close()

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import random
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.special import wrightomega
 
@@ -22,7 +21,6 @@ from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import BaseTwist, Frame, RobotState
-from tests.strategies import angles, bearings, speeds
 
 V = 0.4
 
@@ -82,15 +80,29 @@ def test_tanh_creeps_as_the_logarithm(alpha: float) -> None:
     assert run(text).summary.outside_l <= 0.05 + 1e-12
 
 
-@settings(max_examples=10_000)
-@given(
-    st.floats(0.46, 0.93), bearings, angles, st.floats(-0.5, 0.5), speeds, speeds,
-    st.one_of(st.just(Mount()), st.builds(Mount, st.floats(-0.1, 0.2), st.floats(-0.1, 0.1), st.floats(-0.3, 0.3))),
-)  # fmt: skip
-def test_the_hand_moves_as_commanded_in_the_world(
-    l: float, psi: float, theta_b: float, turned: float, v_c: float, w_c: float, mount: Mount
-) -> None:
-    """Over one step of 1 ms of the moving robot, the hand's mean world velocity is the commanded one, to 1e-3 m/s."""
+@pytest.mark.parametrize("centred", [True, False])
+def test_the_hand_moves_as_commanded_in_the_world(centred: bool) -> None:
+    """Over one step of 1 ms of the moving robot the hand's mean world velocity is the commanded one, to 1e-3 m/s.
+
+    In 10,000 random cases each, with the shoulder on the base's centre and off it.
+    """
+    chance = random.Random(2026)
+    for _ in range(10_000):
+        mount = Mount()
+        if not centred:
+            mount = Mount(chance.uniform(-0.1, 0.2), chance.uniform(-0.1, 0.1), chance.uniform(-0.3, 0.3))
+        check_one_step(
+            chance.uniform(0.46, 0.93),
+            chance.uniform(-0.75, 0.75),
+            chance.uniform(-math.pi, math.pi),
+            chance.uniform(-0.5, 0.5),
+            chance.uniform(-V, V),
+            chance.uniform(-V, V),
+            mount,
+        )
+
+
+def check_one_step(l: float, psi: float, theta_b: float, turned: float, v_c: float, w_c: float, mount: Mount) -> None:
     dt = 1e-3
     model = PlanarRobot(mount=mount)
     controller = HandController(model, exact(Workspace(), tanh(), mount), Frame.HAND, limited=False, whole_steps=True)
@@ -106,16 +118,16 @@ def test_the_hand_moves_as_commanded_in_the_world(
     def hand(pose: tuple[float, float, float], joints: tuple[float, ...]) -> complex:
         """The hand by its chain of bodies: base, shoulder, two links."""
         turn = pose[2] + mount.yaw
-        shoulder = complex(pose[0], pose[1]) + complex(mount.s_x, mount.s_y) * np.exp(1j * pose[2])
+        shoulder = complex(pose[0], pose[1]) + complex(mount.s_x, mount.s_y) * cmath.exp(1j * pose[2])
         return complex(
-            shoulder + 0.5 * np.exp(1j * (turn + joints[0])) + 0.5 * np.exp(1j * (turn + joints[0] + joints[1]))
+            shoulder + 0.5 * cmath.exp(1j * (turn + joints[0])) + 0.5 * cmath.exp(1j * (turn + joints[0] + joints[1]))
         )
 
     before_at, after_at = (0.0, 0.0, 0.0), (after.x_b, after.y_b, after.theta_b)
     # The simulated robot starts at the world's origin; the command is meant in a world turned by theta_b.
     moved = (hand(after_at, after.theta) - hand(before_at, theta)) / dt
-    sweep = 1j * w_c * l * np.exp(1j * (psi + mount.yaw))
-    want = v_c * np.exp(1j * (heading - theta_b)) + sweep
+    sweep = 1j * w_c * l * cmath.exp(1j * (psi + mount.yaw))
+    want = v_c * cmath.exp(1j * (heading - theta_b)) + sweep
     assert step.scale == 1.0
     assert abs(moved - want) <= 1e-3
 
@@ -172,16 +184,16 @@ def test_base_ends_behind_the_hand(v_c: float, shoulder: tuple[float, float], ya
     assert last.v_b == pytest.approx(v_c, abs=1e-3)
 
 
-@pytest.mark.parametrize("law", ["exact", "paper"])
-def test_smoothstep_never_leaves_its_band(law: str) -> None:
+@pytest.mark.parametrize(("law", "duration"), [("exact", 3600.0), ("paper", 600.0)])
+def test_smoothstep_never_leaves_its_band(law: str, duration: float) -> None:
     """In an hour of random driving l and psi never leave [L_min - q/2, L_max + q/2], [Psi_min - q/2, Psi_max + q/2]."""
     chance = random.Random(2026)
     rows = []
     t = 0.0
-    while t < 3600.0:
+    while t < duration:
         rows.append(f"{{t = {t}, v_c = {chance.uniform(-V, V)}, w_c = {chance.uniform(-V, V)}}}")
         t += chance.uniform(0.2, 8.0)
-    text = f'[law]\nblend = "smoothstep"\n[command]\nduration = 3600.0\ndt = 0.01\nsegments = [{", ".join(rows)}]'
+    text = f'[law]\nblend = "smoothstep"\n[command]\nduration = {duration}\ndt = 0.01\nsegments = [{", ".join(rows)}]'
     least_l = least_psi = math.inf
     for row, error, _ in steps(parse_scenario(text), law):
         least_l = min(least_l, row.l - 0.40, 0.90 - row.l)

@@ -26,9 +26,11 @@ BAD = {
     "workspace out of reach": ("[workspace]\nl_max = 1.4\n" + COMMAND, "reach"),
     "unknown robot": ('[robot]\nname = "plannar"\n' + COMMAND, "Did you mean 'planar'"),
     "unknown blend": ('[law]\nblend = "tan"\n' + COMMAND, "Did you mean 'tanh'"),
-    "unknown frame": (COMMAND + 'frame = "hnd"', "command.frame"),
-    "no command": ("[robot]\nl = 0.5\n", "missing required field `command`"),
+    "unknown frame": (COMMAND + 'frame = "hnd"', "valid: hand, polar, base, world"),
+    "no command": ("[robot]\nl = 0.5\n", "missing required table [command]"),
     "negative width": ("[law]\nalpha = -1.0\n" + COMMAND, "alpha must be a finite number > 0"),
+    "command beyond reason": (COMMAND.replace("0.1", "1e308"), "within +-1000"),
+    "noise beyond reason": ("[robot]\nnoise = 1e308\n" + COMMAND, "noise must be at most"),
     "no time": (COMMAND.replace("1.0", "0.0"), "must be > 0 s"),
     "too many steps": (COMMAND + "dt = 1e-9", "steps"),
     "times out of order": (

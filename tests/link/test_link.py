@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import time
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,7 +12,7 @@ from overreach.link import messages
 from overreach.link.endpoint import check_endpoint, free_port, open_session
 from overreach.link.messages import KEY_HELLO, KEY_REQUEST, KEY_STICK, Accepted, Configure, Hello, Refused, Settings
 from overreach.link.operator_end import OperatorEnd
-from overreach.types import Stick
+from overreach.types import Frame, Stick
 from tests.processes import Driver, half, robot, until
 
 
@@ -28,7 +29,6 @@ def test_messages_come_back_as_they_went(stick: Stick) -> None:
         ("127.0.0.1:7460", "tcp/127.0.0.1:7460"),
         ("tcp/robot.local:7460", "tcp/robot.local:7460"),
         ("[::1]:7460", "tcp/[::1]:7460"),
-        ("tls/robot:7460", "tls/robot:7460"),
     ],
 )
 def test_endpoints(given_: str, full: str) -> None:
@@ -36,7 +36,9 @@ def test_endpoints(given_: str, full: str) -> None:
     assert check_endpoint(given_) == full
 
 
-@pytest.mark.parametrize("bad", ["", "robot", "robot:0", "robot:70000", "tcp/robot", "http://robot:80", "a b:80"])
+@pytest.mark.parametrize(
+    "bad", ["", "robot", "robot:0", "robot:70000", "tcp/robot", "tls/robot:7460", "http://robot:80", "a b:80"]
+)
 def test_bad_endpoints(bad: str) -> None:
     """What is no endpoint is refused with the form that is."""
     with pytest.raises(SetupError, match="HOST:PORT"):
@@ -55,14 +57,20 @@ def test_a_robot_side_end_to_end() -> None:
         assert observer.now.mu > 0.9
         assert observer.now.ack <= driver.seq
 
-        answer = observer.link.request(Configure(Settings(law="paper", frame="polar", l_max=1.5)))
+        answer = observer.link.request(Configure(Settings(law="paper", l_max=1.5)))
         assert isinstance(answer, Refused)
         assert "reach" in answer.reason
         answer = observer.link.request(Configure(Settings(law="papper")))
         assert isinstance(answer, Refused)
         assert "Did you mean 'paper'" in answer.reason
+        raw = messages.encode({"type": "configure", "settings": {"frame": "hnad"}})
+        assert "hnad" in str(observer.link._ask(KEY_REQUEST, msgspec.Raw(raw), 2.0))
+        answer = observer.link.request(Configure(Settings(law="e" * 3000)))
+        assert isinstance(answer, Refused)
+        assert len(answer.reason) < 200
         assert observer.link.welcome(1.0).settings == Settings()
-        wanted = Settings(law="paper", frame="polar", blend="tanh", alpha=80.0, speed_scale=0.5)
+        until(lambda: observer.speed() == 0.0, what="rest")
+        wanted = Settings(law="paper", frame=Frame.POLAR, blend="tanh", alpha=80.0, speed_scale=0.5)
         assert observer.link.request(Configure(wanted)) == Accepted()
         assert observer.link.welcome(1.0).settings == wanted
 
@@ -85,7 +93,17 @@ def test_garbage_is_counted_and_dropped() -> None:
         try:
             driver = Driver(observer.link)
             driver.arm()
-            junk = [b"", b"\x00", b"\xff" * 64, b"x" * 100_000, messages.encode({"v_c": 1}), messages.encode([1, 2])]
+            deep = b"\x81\xa1x" + b"\x91" * 3000 + b"\xc0"
+            junk = [
+                deep,
+                b"\x81\xa1x" + b"\x91" * 200_000 + b"\xc0",
+                b"",
+                b"\x00",
+                b"\xff" * 64,
+                b"x" * 100_000,
+                messages.encode({"v_c": 1}),
+                messages.encode([1, 2]),
+            ]
             wrong = [messages.encode({"operator": 7, "seq": 1, "grip": 1, "held": "yes", "v_c": 0.4, "w_c": 0.0})]
             for payload in junk + wrong:
                 raw.put(KEY_STICK, payload)

@@ -12,7 +12,7 @@ def fastest_towards(
 ) -> float:
     """Return the greatest |dtheta| [rad/s] allowed in the direction of `dtheta` at `theta` [rad].
 
-    min(speed, sqrt(2 braking d), d/dt) with d the distance to the limit ahead [rad]: the joint can
+    min(speed, sqrt(2 braking d), d/dt), braking [rad/s^2], with d the distance to the limit ahead [rad]: the joint can
     always stop before it. Away from a limit the joint's own speed is allowed: backing out always works.
     """
     ahead = most - theta if dtheta >= 0.0 else theta - least
@@ -22,7 +22,7 @@ def fastest_towards(
 
 
 def fastest_joints(arm: Arm2R, theta: tuple[float, ...], dtheta: tuple[float, ...], dt: float) -> tuple[float, ...]:
-    """Return `fastest_towards` for every joint of `arm`."""
+    """Return `fastest_towards` for every joint of `arm`, braking at half of what the joint can."""
     return tuple(
         fastest_towards(angle, rate, least, most, speed, 0.5 * braking, dt)
         for angle, rate, least, most, speed, braking in zip(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import signal
 import socket
@@ -26,6 +27,8 @@ def bind_page(host: str, port: int | None) -> socket.socket:
 
     Raises SetupError where the port asked for is taken or not valid, or the host is not this machine's.
     """
+    if not host:
+        raise SetupError("--host must be an address or a name, such as 127.0.0.1 or 0.0.0.0")
     if port is not None and not 0 < port < 65536:
         raise SetupError(f"--port must be 1 to 65535, got {port}")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
@@ -37,9 +40,9 @@ def bind_page(host: str, port: int | None) -> socket.socket:
             page.listen()  # now, not when the server runs: a port that is only bound can be bound again
         except OSError as error:
             page.close()
-            if choice != USUAL_PORT or port is not None:
+            if choice != USUAL_PORT or port is not None or error.errno != errno.EADDRINUSE:
                 raise SetupError(
-                    f"the page cannot be served at {host}:{choice} ({error.strerror}): "
+                    f"the page cannot be served at {host}{f':{choice}' if choice else ''} ({error.strerror}): "
                     "choose another --port, or an address of this machine as --host"
                 ) from None
         else:

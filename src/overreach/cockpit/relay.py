@@ -6,12 +6,14 @@ import asyncio
 import contextlib
 import secrets
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import final
 
 import msgspec
 from fastapi import WebSocket, WebSocketDisconnect
 
 from overreach.cockpit import wire
+from overreach.errors import LinkError
 from overreach.link.messages import (
     Accepted,
     Arm,
@@ -29,6 +31,10 @@ from overreach.link.messages import (
 from overreach.link.operator_end import OperatorEnd
 from overreach.types import Stick
 
+SAID_MOST = 32
+"""Answers that wait for a page that does not read; older ones are dropped."""
+ASKED_MOST = 8
+"""Questions of one page that may wait for their answers."""
 OPERATOR_BITS = 52
 """Operator numbers are random and fit into a JavaScript number."""
 
@@ -45,6 +51,8 @@ class Page:
         self._newest: bytes | None = None
         self._said: list[bytes] = []
         self._wake = asyncio.Event()
+        self.turn = asyncio.Lock()
+        self.asked = 0
 
     def show(self, state: bytes) -> None:
         """Send `state` unless a newer one comes first."""
@@ -54,6 +62,7 @@ class Page:
     def say(self, message: bytes) -> None:
         """Send `message` in any case."""
         self._said.append(message)
+        del self._said[:-SAID_MOST]
         self._wake.set()
 
     async def send_forever(self) -> None:
@@ -80,7 +89,8 @@ class Relay:
         """Called, on the event loop, with settings that have come into force."""
         self._link = link
         self._pages: set[Page] = set()
-        self._revision: int | None = None
+        self._revision = welcome.revision
+        self._stopper = ThreadPoolExecutor(1, "stop")
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -91,7 +101,7 @@ class Relay:
 
     def _from_robot(self, state: State) -> None:
         """Take a state, on zenoh's thread."""
-        if self._pages and self._loop is not None:
+        if (self._pages or state.revision != self._revision) and self._loop is not None:
             message = wire.encode(wire.StateToPage(state))
             with contextlib.suppress(RuntimeError):  # The event loop has closed: the cockpit is ending.
                 self._loop.call_soon_threadsafe(self._show, message, state.revision)
@@ -100,9 +110,8 @@ class Relay:
         for page in self._pages:
             page.show(message)
         if revision != self._revision:
-            known, self._revision = self._revision, revision
-            if known is not None:
-                self._spawn(self._refresh())
+            self._revision = revision
+            self._spawn(self._refresh())
 
     def _spawn(self, work: object) -> None:
         task = asyncio.ensure_future(work)  # type: ignore[call-overload]
@@ -111,7 +120,11 @@ class Relay:
 
     async def _refresh(self) -> None:
         """Fetch settings that somebody changed and tell everybody."""
-        welcome = await asyncio.to_thread(self._link.welcome, 1.0)
+        try:
+            welcome = await asyncio.to_thread(self._link.welcome, 1.0)
+        except LinkError:
+            self._revision = -1  # not known: the next state asks again
+            return
         self.settings = welcome.settings
         for page in self._pages:
             page.say(wire.encode(wire.SettingsToPage(self.settings)))
@@ -119,7 +132,9 @@ class Relay:
             told(self.settings)
 
     async def ask(self, request: Request) -> Accepted | Refused:
-        """Ask the robot side, without holding up the pages."""
+        """Ask the robot side, without holding up the pages. Stop has a thread of its own: it waits for nobody."""
+        if isinstance(request, Stop):
+            return await asyncio.get_running_loop().run_in_executor(self._stopper, self._link.request, request)
         return await asyncio.to_thread(self._link.request, request)
 
     async def configure(self, settings: Settings) -> Accepted | Refused:
@@ -138,12 +153,13 @@ class Relay:
         try:
             while True:
                 await self._take(page, await socket.receive_text())
-        except (WebSocketDisconnect, RuntimeError):
-            pass
+        except (WebSocketDisconnect, RuntimeError, KeyError):
+            pass  # gone, or it sent something that is no text
         finally:
             self._pages.discard(page)
             sender.cancel()
             self._link.send(Stick(page.operator, page.seq + 1, page.grip, False, 0.0, 0.0))
+            self._spawn(self.ask(Disarm(page.operator)))
             with contextlib.suppress(Exception, asyncio.CancelledError):
                 await sender
 
@@ -166,11 +182,22 @@ class Relay:
         requests: dict[str, Request] = {
             "stop": Stop(),
             "reset": Reset(),
-            "arm": Arm(page.operator),
-            "disarm": Disarm(),
+            "arm": Arm(page.operator, page.grip),
+            "disarm": Disarm(page.operator),
             "restart": Restart(),
         }
         request = requests.get(question.what)
-        answer = await self.ask(request) if request else Refused(f"Unknown button {question.what!r}.")
+        answer: Accepted | Refused
+        if request is None:
+            answer = Refused(f"Unknown button {question.what!r}.")
+        elif isinstance(request, Stop):
+            answer = await self.ask(request)
+        elif page.asked >= ASKED_MOST:
+            answer = Refused("Too many questions at once.")
+        else:
+            page.asked += 1
+            async with page.turn:  # in the order in which they were asked
+                answer = await self.ask(request)
+            page.asked -= 1
         reason = answer.reason if isinstance(answer, Refused) else ""
         page.say(wire.encode(wire.AnswerToPage(question.id, not reason, reason)))

@@ -13,7 +13,7 @@ from fastapi import FastAPI, WebSocket
 from fastapi.staticfiles import StaticFiles
 from nicegui import ui
 
-from overreach.cockpit.origin import same_origin
+from overreach.cockpit.origin import OwnPagesOnly
 from overreach.cockpit.page import build_page
 from overreach.cockpit.relay import Relay
 
@@ -45,12 +45,10 @@ def serve(
 
     @app.websocket("/ws")
     async def talk(websocket: WebSocket) -> None:
-        if not same_origin(websocket.headers, host):
-            await websocket.close(1008)
-            return
         await websocket.accept()
         await relay.serve(websocket)
 
+    app.add_middleware(OwnPagesOnly, host=host)
     app.mount("/static", StaticFiles(directory=STATIC))
     ui.run_with(
         app,

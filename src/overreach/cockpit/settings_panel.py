@@ -95,7 +95,7 @@ class SettingsPanel:
     def _handler(self, field: str) -> Callable[[Any], Any]:
         async def changed(event: Any) -> None:
             if not self._quiet:
-                await self._ask({field: event.value})
+                await self._ask({field: Frame(event.value) if field == "frame" else event.value})
 
         return changed
 
@@ -120,7 +120,7 @@ class SettingsPanel:
             ui.notify(answer.reason, type="warning", position="top")
 
     async def _defaults(self) -> None:
-        self._tell(await self._relay.configure(self._relay.welcome.settings))
+        self._tell(await self._relay.configure(self._relay.welcome.defaults))
         self.show(self._relay.settings)
 
     def show(self, settings: Settings) -> None:

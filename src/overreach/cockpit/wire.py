@@ -5,19 +5,25 @@ The page's own words carry no operator: the cockpit gives each connection its nu
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import msgspec
 
 from overreach.link.messages import Settings, State, Welcome
 
 LONGEST = 4096
-"""Longest message [bytes] that is taken from a page."""
+"""Longest message [characters] that is taken from a page."""
+
+
+Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
+"""A number that counts up, as exact in JavaScript as here."""
 
 
 class StickFromPage(msgspec.Struct, frozen=True, tag="stick", forbid_unknown_fields=True):
     """See `overreach.types.Stick`."""
 
-    seq: int
-    grip: int
+    seq: Count
+    grip: Count
     held: bool
     v_c: float
     w_c: float

@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 import bisect
-import csv
 import importlib.resources
 import math
 import os
@@ -23,6 +22,7 @@ from typing import Any
 import msgspec
 
 from overreach.errors import ScenarioError, UnknownNameError
+from overreach.experiments.command import FASTEST, Segment, read_commands
 from overreach.gate.limits import Limits
 from overreach.law.blend import Blend, blend_from
 from overreach.law.workspace import Mount, Workspace
@@ -31,6 +31,7 @@ from overreach.plugs import load_robot
 from overreach.robots.imperfect import Imperfection
 from overreach.types import Command, Frame, Record
 
+LONGEST_S = 1e6
 MOST_STEPS = 20_000_000
 """Longest run: 20,000 s at 1 ms. Above this a mistyped dt is likelier than a wish."""
 
@@ -66,14 +67,6 @@ class LawTable(Record, frozen=True):
     beta: float = 50.0
     q_l: float = 0.1
     q_psi: float = 0.1
-
-
-class Segment(Record, frozen=True):
-    """From t [s] on, until the next segment, the command is (v_c, w_c)."""
-
-    t: float
-    v_c: float
-    w_c: float
 
 
 class CommandTable(Record, frozen=True):
@@ -143,7 +136,7 @@ def load_scenario(which: str | os.PathLike[str]) -> Scenario:
     if not name.endswith(".toml") and os.sep not in name:
         builtin = builtin_scenarios()
         if name not in builtin:
-            raise UnknownNameError("scenario", name, [*builtin, "or a path ending in .toml"])
+            raise UnknownNameError("scenario", name, builtin, "A file's name must end in .toml.")
         return parse_scenario(builtin[name], name)
     path = Path(name)
     try:
@@ -210,6 +203,11 @@ def _check_finite(value: Any, where: str, name: str) -> None:
 def _readable(error: msgspec.ValidationError) -> str:
     """Turn msgspec's `... - at `$.robot.l`` into a place first, then what is wrong."""
     text, _, place = str(error).partition(" - at `$.")
+    if place.startswith("command.frame"):
+        text += f" (valid: {', '.join(Frame)})"
+    text = text.replace("Expected `object`", "Expected a table").replace(
+        "Object missing required field `command`", "missing required table [command]"
+    )
     return f"{place.rstrip('`')}: {text}" if place else text
 
 
@@ -220,14 +218,17 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
             f"scenario {name!r}: command.duration and command.dt must be > 0 s, "
             f"got {command.duration:g} and {command.dt:g}"
         )
-    if command.duration / command.dt > MOST_STEPS:
+    if any(max(abs(one.v_c), abs(one.w_c)) > FASTEST for one in command.segments or ()):
+        raise ScenarioError(f"scenario {name!r}: command.segments: v_c and w_c must be within +-{FASTEST:g}")
+    if command.duration > LONGEST_S or command.duration / command.dt > MOST_STEPS:
         raise ScenarioError(
-            f"scenario {name!r}: duration / dt is more than {MOST_STEPS:,} steps: use a greater dt or less time"
+            f"scenario {name!r}: more than {LONGEST_S:,.0f} s or {MOST_STEPS:,} steps (duration / dt): "
+            "use less time or a greater dt"
         )
     if (command.segments is None) == (command.file is None):
         raise ScenarioError(f"scenario {name!r}: [command] needs either segments or file, one of the two")
     if command.file is not None:
-        segments = _read_commands(folder / command.file, name)
+        segments = read_commands(folder / command.file, name)
     else:
         segments = command.segments or ()
     if any(later.t <= earlier.t for earlier, later in pairwise(segments)):
@@ -265,28 +266,3 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
         segments=segments,
         limits=tables.limits,
     )
-
-
-def _read_commands(path: Path, name: str) -> tuple[Segment, ...]:
-    """Read t,v_c,w_c rows; a header line with those names is required."""
-    try:
-        with path.open(newline="", encoding="utf-8") as stream:
-            rows = list(csv.reader(stream))
-    except FileNotFoundError:
-        raise ScenarioError(f"scenario {name!r}: no command file {str(path)!r}") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ScenarioError(f"scenario {name!r}: cannot read command file {str(path)!r}: {error}") from None
-    if not rows or [cell.strip() for cell in rows[0]] != ["t", "v_c", "w_c"]:
-        raise ScenarioError(f"scenario {name!r}: {path.name} must begin with the header t,v_c,w_c")
-    segments = []
-    for number, row in enumerate(rows[1:], start=2):
-        if not row:
-            continue
-        try:
-            t, v_c, w_c = (float(cell) for cell in row)
-        except ValueError:
-            t = v_c = w_c = math.nan
-        if not (math.isfinite(t) and math.isfinite(v_c) and math.isfinite(w_c)):
-            raise ScenarioError(f"scenario {name!r}: {path.name} line {number}: three finite numbers, got {row}")
-        segments.append(Segment(t, v_c, w_c))
-    return tuple(segments)

@@ -20,6 +20,13 @@ LOST_S = 1.0
 """Without a fresh command for this long [s], the robot is disarmed."""
 
 
+TOLD_S = 0.5
+"""How long a refusal is told [s], where nothing weightier is."""
+OPERATORS_KEPT = 64
+"""How many operators' last messages are remembered."""
+WEIGHT = {verdict: k for k, verdict in enumerate(Verdict)}
+
+
 class Gated(Record, frozen=True):
     """What the gate lets through: v_c, w_c, the scale the speed limit put on them, and the verdict."""
 
@@ -43,6 +50,9 @@ class Gate:
         self.refused = 0
         self._stick: Stick | None = None
         self._fresh_at = -math.inf
+        self._seen: dict[int, tuple[int, int]] = {}
+        self._refusal = Verdict.OUT_OF_ORDER
+        self._refused_at = -math.inf
         self._v_c = 0.0
         self._w_c = 0.0
 
@@ -62,29 +72,47 @@ class Gate:
         """Number of the last accepted message, 0 before the first."""
         return self._stick.seq if self._stick else 0
 
-    def arm(self, operator: int) -> bool:
-        """Arm for `operator`. Says False while stopped; a dead-man that is already held does not count."""
-        held = self._stick.grip if self._stick and self._stick.operator == operator else 0
-        if self.latch.operator != operator:
+    def arm(self, operator: int, grip: int, now: float) -> Verdict | None:
+        """Arm for `operator` at `now` [s]; return why not, or None.
+
+        Presses up to `grip` do not count: a dead-man that is already held moves nothing. Whoever armed before
+        keeps the robot until it rests and he has been silent for LOST_S.
+        """
+        latch = self.latch
+        if latch.stopped:
+            return Verdict.STOPPED
+        if latch.armed and latch.operator != operator and not (self.resting and now - self._fresh_at > LOST_S):
+            return Verdict.OTHER_OPERATOR
+        if latch.operator != operator:
             self._stick = None
-        return self.latch.arm(operator, held)
+        latch.arm(operator, max(grip, self._seen.get(operator, (0, 0))[1]))
+        return None
 
     def accept(self, stick: Stick, now: float) -> Verdict | None:
         """Take a message that arrived at `now` [s]; return why it is refused, or None."""
         latch = self.latch
+        seq, grip = self._seen.get(stick.operator, (0, 0))
         refusal: Verdict | None = None
         if not (math.isfinite(stick.v_c) and math.isfinite(stick.w_c)):
             refusal = Verdict.NOT_FINITE
-        elif latch.armed and stick.operator != latch.operator:
-            refusal = Verdict.OTHER_OPERATOR
-        elif self._stick and stick.operator == self._stick.operator and stick.seq <= self._stick.seq:
+        elif stick.seq <= seq:
             refusal = Verdict.OUT_OF_ORDER
+        else:
+            # Remembered for refused operators too: their old messages and presses stay old when they arm.
+            self._seen.pop(stick.operator, None)
+            self._seen[stick.operator] = (stick.seq, max(grip, stick.grip))
+            if len(self._seen) > OPERATORS_KEPT:
+                del self._seen[next(iter(self._seen))]
+            if latch.armed and stick.operator != latch.operator:
+                refusal = Verdict.OTHER_OPERATOR
         if refusal:
             self.refused += 1
+            self._refusal = refusal
+            self._refused_at = now
             return refusal
-        if latch.armed and self._was_lost(now) and self._stick:
-            # The signal comes back before a tick has seen that it was gone: it is lost all the same.
-            latch.spend(self._stick.grip)
+        if latch.armed and self._was_lost(now):
+            # Lost while held: neither that press counts nor one that was made while nothing came through.
+            latch.spend(stick.grip)
         self._stick = stick
         self._fresh_at = now
         return None
@@ -113,11 +141,8 @@ class Gate:
             return 0.0, 0.0, Verdict.REGRIP
         return stick.v_c, stick.w_c, Verdict.MOVING
 
-    def tick(self, now: float, dt: float, refusal: Verdict | None = None) -> Gated:
-        """Return the command for the period `dt` [s] that begins at `now` [s].
-
-        `refusal`: why a message was refused since the last tick; shown if nothing weightier is.
-        """
+    def tick(self, now: float, dt: float) -> Gated:
+        """Return the command for the period `dt` [s] that begins at `now` [s]."""
         v_c, w_c, verdict = self._wish(now)
         v_c, w_c, scale = limit_speed(v_c * self.speed_scale, w_c * self.speed_scale, self.limits)
         self._v_c, self._w_c, ramping = slew((self._v_c, self._w_c), (v_c, w_c), self.limits, dt)
@@ -126,6 +151,6 @@ class Gate:
                 verdict = Verdict.SPEED
             elif ramping:
                 verdict = Verdict.ACCELERATION
-        if refusal and verdict not in (Verdict.STOPPED, Verdict.DISARMED, Verdict.LOST):
-            verdict = refusal
+        if now - self._refused_at < TOLD_S and WEIGHT[self._refusal] < WEIGHT[verdict]:
+            verdict = self._refusal
         return Gated(self._v_c, self._w_c, scale, verdict)

@@ -34,14 +34,12 @@ class StopLatch:
         self.stopped = False
         self.armed = False
 
-    def arm(self, operator: int, grip: int) -> bool:
-        """Arm for `operator`; a press (`grip`) that is already held does not count. False while stopped."""
-        if self.stopped:
-            return False
-        self.armed = True
-        self.operator = operator
-        self.spent_grip = grip
-        return True
+    def arm(self, operator: int, grip: int) -> None:
+        """Arm for `operator`, unless stopped; his presses up to number `grip` do not count."""
+        if not self.stopped:
+            self.armed = True
+            self.operator = operator
+            self.spent_grip = grip
 
     def disarm(self) -> None:
         """Disarm. The robot comes to rest."""

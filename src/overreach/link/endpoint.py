@@ -10,7 +10,7 @@ import zenoh
 
 from overreach.errors import LinkError, SetupError
 
-_ENDPOINT = re.compile(r"^(tcp|tls|quic|udp)/(\[[0-9a-fA-F:]+\]|[^/:\s]+):(\d{1,5})$")
+_ENDPOINT = re.compile(r"^(tcp|udp)/(\[[0-9a-fA-F:]+\]|[^/:\s]+):(\d{1,5})$")
 
 
 def check_endpoint(endpoint: str) -> str:
@@ -54,5 +54,6 @@ def open_session(listen: str | None = None, connect: str | None = None) -> zenoh
         return zenoh.open(config)
     except zenoh.ZError as error:
         where = f"listen at {listen}" if listen else f"connect to {connect}"
-        reason = str(error).splitlines()[0]
-        raise LinkError(f"cannot {where}: is the port taken, the address this machine's? ({reason})") from None
+        reason = str(error).splitlines()[0].partition(" at /")[0]
+        hint = "is the port taken, or the address not this machine's?" if listen else "is the address right?"
+        raise LinkError(f"cannot {where}: {hint} ({reason})") from None

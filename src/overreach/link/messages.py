@@ -11,10 +11,13 @@ from __future__ import annotations
 
 import msgspec
 
-from overreach.types import Stick
+from overreach.types import Frame, Stick
 
 PROTOCOL = 1
 """Raised when a message changes its meaning; both halves must have the same."""
+
+LONGEST = 4096
+"""Longest message [bytes] that the robot side looks at."""
 
 KEY_STICK = "overreach/stick"
 KEY_REQUEST = "overreach/request"
@@ -27,7 +30,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     law: str = "exact"
     blend: str = "smoothstep"
-    frame: str = "hand"
+    frame: Frame = Frame.HAND
     alpha: float = 50.0
     beta: float = 50.0
     q_l: float = 0.1
@@ -48,13 +51,16 @@ class Reset(msgspec.Struct, frozen=True, tag="reset"):
 
 
 class Arm(msgspec.Struct, frozen=True, tag="arm"):
-    """Arm for this operator."""
+    """Arm for this operator; its presses of the dead-man up to number `grip` do not count."""
 
     operator: int
+    grip: int = 0
 
 
 class Disarm(msgspec.Struct, frozen=True, tag="disarm"):
-    """Disarm."""
+    """Disarm, if it is this operator who armed."""
+
+    operator: int
 
 
 class Restart(msgspec.Struct, frozen=True, tag="restart"):
@@ -103,6 +109,8 @@ class Welcome(msgspec.Struct, frozen=True, tag="welcome"):
     stop_time: float
     simulated: bool
     settings: Settings
+    defaults: Settings
+    revision: int
 
 
 Answer = Accepted | Refused | Welcome

@@ -18,6 +18,7 @@ from overreach.link.messages import (
     KEY_REQUEST,
     KEY_STATE,
     KEY_STICK,
+    LONGEST,
     Answer,
     Hello,
     Refused,
@@ -31,6 +32,9 @@ from overreach.link.messages import (
 from overreach.types import Stick
 
 T = TypeVar("T")
+
+NOT_UNDERSTOOD = (msgspec.DecodeError, UnicodeDecodeError, RecursionError)
+"""What decoding may raise, whatever bytes came."""
 
 REQUESTS_HELD = 64
 """Requests that wait for the next tick; more than this at once are not waited for."""
@@ -59,8 +63,8 @@ class RobotEnd:
         if sample is None:
             return None
         try:
-            return decode_stick(sample.payload.to_bytes())
-        except (msgspec.DecodeError, UnicodeDecodeError):
+            return decode_stick(_short(sample.payload))
+        except NOT_UNDERSTOOD:
             self.malformed += 1
             return None
 
@@ -78,8 +82,8 @@ class RobotEnd:
         while (query := queryable.try_recv()) is not None:
             answer = _answer_to(query)
             try:
-                message = decode(query.payload.to_bytes() if query.payload else b"")
-            except (msgspec.DecodeError, UnicodeDecodeError) as error:
+                message = decode(_short(query.payload) if query.payload else b"")
+            except NOT_UNDERSTOOD as error:
                 self.malformed += 1
                 answer(Refused(f"Not understood: {error}"))
                 continue
@@ -92,6 +96,12 @@ class RobotEnd:
     def close(self) -> None:
         """Close the session; without this the process could hang at its end."""
         self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
+
+
+def _short(payload: zenoh.ZBytes) -> bytes:
+    if len(payload) > LONGEST:
+        raise msgspec.DecodeError(f"a message of more than {LONGEST} bytes")
+    return payload.to_bytes()
 
 
 def _answer_to(query: zenoh.Query) -> Callable[[Answer], None]:

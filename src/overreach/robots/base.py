@@ -21,11 +21,3 @@ class Robot(Protocol):
     def stop(self, now: float) -> None:
         """Stand still: zero velocity, held. Called at the end of every run, in every path."""
         ...
-
-
-class Restartable(Protocol):
-    """A simulated robot: it can be put back to where it began."""
-
-    def restart(self, now: float) -> None:
-        """Put the robot at its start, at rest."""
-        ...

@@ -27,6 +27,8 @@ class Imperfection(Record, frozen=True):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0.0):
                 raise SetupError(f"{name} must be a finite number >= 0, got {value:g}")
+        if self.noise > math.pi:
+            raise SetupError(f"noise must be at most pi rad, got {self.noise:g}")
 
     @property
     def ideal(self) -> bool:

@@ -1,5 +1,6 @@
 // The Gamepad API's standard mapping: left stick drives, B or Circle stops, Start arms.
-// A stick that springs back is its own dead-man: off its centre is held, at its centre is released.
+// A stick that springs back is its own dead-man: off its centre is held, at its centre is released. After any
+// release, and at the start, it must be seen at its centre before it counts again, and it takes hold from nobody.
 
 const CENTRE = 0.15;
 const HOLD = 0.08; // once held, released only nearer to the centre
@@ -8,17 +9,28 @@ const BUTTON_ARM = 9;
 
 export function attachGamepad(stick, buttons) {
   const was = { stop: false, arm: false };
+  let centred = false;
   const look = () => {
     const pad = [...(navigator.getGamepads?.() ?? [])].find((one) => one?.connected);
-    if (!pad) return stick.release("gamepad"); // unplugged
+    if (!pad || document.hidden) {
+      centred = false;
+      return stick.release("gamepad"); // unplugged, or out of sight
+    }
     const [x, y] = [pad.axes[0] ?? 0, -(pad.axes[1] ?? 0)];
     const size = Math.hypot(x, y);
     const held = stick.holder === "gamepad";
     if (size > (held ? HOLD : CENTRE)) {
       const part = Math.min(1, (size - HOLD) / (1 - HOLD)) / size;
-      if (!held) stick.press("gamepad", x * part, y * part);
-      else if (x * part !== stick.x || y * part !== stick.y) stick.move("gamepad", x * part, y * part);
-    } else stick.release("gamepad");
+      if (held) {
+        if (x * part !== stick.x || y * part !== stick.y) stick.move("gamepad", x * part, y * part);
+      } else if (centred && !stick.held) {
+        stick.press("gamepad", x * part, y * part);
+        centred = false;
+      }
+    } else {
+      stick.release("gamepad");
+      centred = true;
+    }
     const stop = pad.buttons[BUTTON_STOP]?.pressed ?? false;
     const arm = pad.buttons[BUTTON_ARM]?.pressed ?? false;
     if (stop && !was.stop) buttons.stop();

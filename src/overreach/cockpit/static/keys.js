@@ -8,6 +8,8 @@ const WAYS = {
 };
 const SLOW = 0.25;
 
+const writing = (target) => target.closest?.("input, textarea, [contenteditable]");
+
 // A key that a text field or a slider would take for itself is not ours.
 const elsewhere = (target) => target.closest?.("input, textarea, select, [contenteditable], .q-field, .q-slider, [role=slider], [role=listbox]");
 
@@ -25,14 +27,18 @@ export function attachKeys(stick, buttons) {
     const size = Math.max(1, Math.hypot(x, y)) / (slow ? SLOW : 1);
     return [x / size, y / size];
   };
+  const letGo = () => {
+    down.clear();
+    stick.release("keys");
+  };
   window.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.code === "Escape") return buttons.stop();
-    if (elsewhere(event.target)) return;
-    if (event.code === "Space") {
+    if (event.code === "Escape" || (event.code === "Space" && !writing(event.target))) {
       event.preventDefault();
       return buttons.stop();
     }
+    // While Ctrl, Alt or Meta is down some systems never tell that other keys are let go: let go of all.
+    if (event.ctrlKey || event.metaKey || event.altKey) return letGo();
+    if (elsewhere(event.target)) return;
     if (event.key === "Shift") {
       slow = true;
       if (down.size) stick.move("keys", ...steer());
@@ -59,5 +65,8 @@ export function attachKeys(stick, buttons) {
     if (down.size) stick.move("keys", ...steer());
     else stick.release("keys");
   });
-  for (const event of ["blur", "pagehide"]) window.addEventListener(event, () => down.clear());
+  for (const event of ["blur", "pagehide", "offline", "contextmenu"]) window.addEventListener(event, letGo);
+  document.addEventListener("visibilitychange", () => document.hidden && letGo());
+  // Whoever else ends the hold ends it for the keys that are down, too.
+  stick.listeners.push(() => stick.held || down.clear());
 }

@@ -24,7 +24,7 @@ await built();
 const panel = new Panel();
 const view = new View($("view"));
 const plots = new Plots([...document.querySelectorAll(".plot")]);
-const page = { robot: null, settings: null, state: null, states: 0, heard: performance.now(), drawn: null };
+const page = { robot: null, settings: null, state: null, stopping: false, heard: performance.now(), drawn: null };
 
 const link = new Link({
   welcome(robot, settings) {
@@ -36,7 +36,6 @@ const link = new Link({
   settings: configure,
   state(state) {
     page.state = state;
-    page.states += 1;
     page.heard = performance.now();
     view.show(state, page.robot, page.settings);
     plots.add(state);
@@ -60,7 +59,7 @@ function configure(settings) {
 
 view.afterDraw.push((state) => {
   if (!state || !link.ready) return;
-  panel.show(state, Math.hypot(...handVelocity(state, page.robot)));
+  panel.show(state, Math.hypot(...handVelocity(state, page.robot)), link.operator);
   page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
 });
 view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
@@ -70,22 +69,22 @@ setInterval(() => {
 
 async function ask(what) {
   const answer = await link.ask(what);
-  if (!answer.done) panel.say("warn", "Not done", answer.reason);
+  if (!answer.done) panel.tell("Not done", answer.reason);
   return answer;
 }
 const buttons = {
-  // A stop is asked for until the robot side says that it is stopped.
+  // A stop is asked for until the robot side has said that it is done, over lost connections too.
   async stop() {
     stick.release();
-    do {
-      await ask("stop");
-      await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
-    } while (link.ready && !page.state?.stopped);
+    if (page.stopping) return;
+    page.stopping = true;
+    while (!(await ask("stop")).done) await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
+    page.stopping = false;
   },
   arm: () => ask("arm").then(() => $("pad").focus({ preventScroll: true })),
   reset: () => ask("reset"),
   async restart() {
-    if (page.state?.armed) await ask("disarm");
+    if (page.state?.armed && !(await ask("disarm")).done) return;
     for (let k = 0; k < 10; k++) {
       const answer = await link.ask("restart");
       if (answer.done) break;

@@ -6,6 +6,7 @@ const KINDS = {
   disarmed: "down", stopped: "stop",
 };
 const NUMBERS_MS = 120;
+const TOLD_MS = 2500;
 const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
 
 const $ = (id) => document.getElementById(id);
@@ -19,6 +20,7 @@ export const authority = (share) => (share <= EDGE ? "arm" : share >= 1 - EDGE ?
 export class Panel {
   constructor() {
     this.told = 0;
+    this.until = 0;
     this.shares = [...document.querySelectorAll(".share")].map((row) => ({
       name: row.dataset.share, bar: row.querySelector(".bar"), fill: row.querySelector("i"),
       who: row.querySelector(".who"), value: row.querySelector(".value"),
@@ -32,14 +34,18 @@ export class Panel {
   }
 
   // `speed`: the hand's true speed [m/s].
-  show(s, speed) {
+  show(s, speed, operator) {
     const now = performance.now();
+    const mine = s.armed && s.operator === operator;
     if (now - this.told > NUMBERS_MS) {
       this.told = now;
       this.numbers(s, speed);
     }
     const part = s.scale < 0.995 && ["speed", "acceleration", "joint_limit", "beside"].includes(s.verdict) ? ` (× ${s.scale.toFixed(2)})` : "";
-    this.say(KINDS[s.verdict] ?? "warn", s.word, s.sentence + part);
+    if (now > this.until) {
+      if (s.armed && !mine) this.say("warn", "Watching", "Another page has armed the robot. Arm takes over when it rests.");
+      else this.say(KINDS[s.verdict] ?? "warn", s.word, s.sentence + part);
+    }
     for (const { name, bar, fill, who, value } of this.shares) {
       const share = s[name];
       if (value.textContent === share.toFixed(2)) continue;
@@ -50,10 +56,10 @@ export class Panel {
       put(who, word);
       who.dataset.who = word;
     }
-    $("arm").disabled = s.armed || s.stopped;
+    $("arm").disabled = mine || s.stopped;
     $("reset").disabled = !s.stopped;
-    $("pad").dataset.armed = s.armed;
-    const hint = s.stopped ? "Press Reset, then Arm" : !s.armed ? "Press Arm, then drag" : "";
+    $("pad").dataset.armed = mine;
+    const hint = s.stopped ? "Press Reset, then Arm" : !mine ? "Press Arm, then drag" : "";
     $("pad-hint").hidden = !hint;
     put($("pad-hint"), hint);
   }
@@ -63,7 +69,14 @@ export class Panel {
     put($("r-hand"), `${signed(s.x_e)}, ${signed(s.y_e)} m`);
     put($("r-base"), `${signed(s.x_b)}, ${signed(s.y_b)} m  ${signed((s.theta_b * 180) / Math.PI, 0)}°`);
     put($("r-speed"), `${speed.toFixed(2)} m/s`);
+    put($("r-refused"), `${s.refused}`);
     put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
+  }
+
+  // Something that the next state must not wipe away.
+  tell(word, reason) {
+    this.until = performance.now() + TOLD_MS;
+    this.say("warn", word, reason);
   }
 
   say(kind, word, reason) {
