@@ -64,6 +64,7 @@ def test_settings_are_live(page: Page, cockpit: Cockpit) -> None:
     until(lambda: force()["law"] == "paper", what="the law")
     page.click('#set-frame button:has-text("world")')
     until(lambda: force()["frame"] == "world", what="the frame")
+    until(lambda: page.inner_text("#unit-w") == "m/s", what="the unit of the pad")
     page.click('#set-blend button:has-text("tanh")')
     until(lambda: force()["blend"] == "tanh", what="the blend")
     slide("alpha", ["ArrowRight"] * 3)

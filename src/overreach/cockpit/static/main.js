@@ -53,6 +53,7 @@ const stick = new Stick(link);
 function configure(settings) {
   page.settings = settings;
   plots.configure(settings);
+  panel.frame(settings.frame);
   view.settings = settings;
   view.dirty = true;
 }

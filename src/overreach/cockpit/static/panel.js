@@ -91,6 +91,14 @@ export class Panel {
     $("pad").dataset.armed = false;
   }
 
+  // In the frames of base and world the two parts of the command are the x and y velocity.
+  frame(name) {
+    const plane = name === "base" || name === "world";
+    $("axis-v").innerHTML = plane ? "v<sub>x</sub>" : "v<sub>c</sub>";
+    $("axis-w").innerHTML = plane ? "v<sub>y</sub>" : "w<sub>c</sub>";
+    $("unit-w").textContent = plane ? "m/s" : "rad/s";
+  }
+
   stick(stick) {
     put($("out-v"), signed(stick.v_c));
     put($("out-w"), signed(stick.w_c));
