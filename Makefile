@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 .PHONY: drive test venv lint types bench browser clean
 
 drive: venv
-	$(BIN)/overreach drive
+	@$(BIN)/overreach drive || [ $$? -eq 130 ]  # Ctrl-C is how it ends
 
 venv: $(VENV)/.ready
 

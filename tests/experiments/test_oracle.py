@@ -193,7 +193,7 @@ def test_smoothstep_never_leaves_its_band(law: str, duration: float) -> None:
     while t < duration:
         rows.append(f"{{t = {t}, v_c = {chance.uniform(-V, V)}, w_c = {chance.uniform(-V, V)}}}")
         t += chance.uniform(0.2, 8.0)
-    text = f'[law]\nblend = "smoothstep"\n[command]\nduration = {duration}\ndt = 0.01\nsegments = [{", ".join(rows)}]'
+    text = f'[law]\nblend = "smoothstep"\n[command]\nduration = {duration}\ndt = 0.02\nsegments = [{", ".join(rows)}]'
     least_l = least_psi = math.inf
     for row, error, _ in steps(parse_scenario(text), law):
         least_l = min(least_l, row.l - 0.40, 0.90 - row.l)

@@ -69,7 +69,7 @@ def check_exact(l: float, psi: float, u_r: float, u_t: float, blend: Blend, moun
         assert split.scale == 1.0
 
 
-@settings(max_examples=2_000)
+@settings(max_examples=1_000)
 @given(lengths, bearings, speeds, speeds, blends)
 def test_exact_gives_the_base_the_papers_shares(l: float, psi: float, u_r: float, u_t: float, blend: Blend) -> None:
     """With s = 0 the base gives mu u_r along r, the arm (1 - mu) u_r, and the arm's bearing rate is blended."""
@@ -81,7 +81,7 @@ def test_exact_gives_the_base_the_papers_shares(l: float, psi: float, u_r: float
         assert split.w_m == pytest.approx((1.0 - split.sigma) * u_t / l, abs=TINY)
 
 
-@settings(max_examples=2_000)
+@settings(max_examples=1_000)
 @given(lengths, bearings, speeds, speeds, blends, mounts)
 def test_exact_is_the_closed_form(l: float, psi: float, u_r: float, u_t: float, blend: Blend, mount: Mount) -> None:
     """`exact` equals the equations of the design, written out by vectors and solved by trying both signs."""
@@ -114,7 +114,7 @@ def test_exact_is_the_closed_form(l: float, psi: float, u_r: float, u_t: float, 
     assert any(all(a == pytest.approx(b, abs=1e-9) for a, b in zip(got, one, strict=True)) for one in found)
 
 
-@settings(max_examples=2_000)
+@settings(max_examples=1_000)
 @given(lengths, bearings, speeds, mounts, st.floats(0.05, 0.2), st.sampled_from([tanh(), smoothstep()]))
 def test_exact_is_continuous_where_the_command_turns_back(
     l: float, psi: float, u_t: float, mount: Mount, speed: float, blend: Blend
@@ -127,7 +127,7 @@ def test_exact_is_continuous_where_the_command_turns_back(
         assert getattr(one, rate) == pytest.approx(getattr(other, rate), abs=1e-6)
 
 
-@settings(max_examples=2_000)
+@settings(max_examples=1_000)
 @given(lengths, bearings, speeds, speeds, blends, mounts, st.floats(0.01, 100.0))
 def test_laws_are_homogeneous(
     l: float, psi: float, u_r: float, u_t: float, blend: Blend, mount: Mount, factor: float
@@ -139,7 +139,7 @@ def test_laws_are_homogeneous(
             assert getattr(many, rate) == pytest.approx(factor * getattr(one, rate), rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=2_000)
+@settings(max_examples=1_000)
 @given(lengths, bearings, speeds, speeds, blends)
 def test_exact_is_the_same_in_a_mirror(l: float, psi: float, u_r: float, u_t: float, blend: Blend) -> None:
     """Left and right are alike: the mirrored command in the mirrored pose gives the mirrored rates."""
@@ -151,7 +151,7 @@ def test_exact_is_the_same_in_a_mirror(l: float, psi: float, u_r: float, u_t: fl
     assert (one.w_b, one.w_m) == pytest.approx((-other.w_b, -other.w_m), abs=1e-9)
 
 
-@settings(max_examples=2_000)
+@settings(max_examples=1_000)
 @given(lengths, bearings, speeds, speeds, blends)
 def test_paper_distorts_by_the_drives_sideways_part(l: float, psi: float, v_c: float, w_c: float, blend: Blend) -> None:
     """With `paper` the EE leaves its command by mu |v_c tan psi|, all of it sideways."""
