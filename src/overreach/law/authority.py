@@ -9,7 +9,7 @@ mount = (s_x, s_y, yaw), and returns (mu, sigma, v_b, w_b, v_m, w_m, scale), as 
 
 from __future__ import annotations
 
-from math import atan2, copysign, cos, hypot, pi, sin, sqrt
+from math import atan, copysign, cos, hypot, pi, sin, sqrt
 
 from overreach.law.blend import Rise
 
@@ -25,6 +25,9 @@ BASE_GAIN_2 = BASE_GAIN * BASE_GAIN
 LEVER_MIN = 0.1
 """The lever k_t by which the base turns the hand is taken as at least this part of l."""
 LEVER_MIN_2 = LEVER_MIN * LEVER_MIN
+
+HUGE = 1e300
+"""(|u|/u_r)^2 above which the base has as good as nothing to drive, and nothing to line up with."""
 
 
 def scaled_drive(drive: float, lined: float, speed: float) -> tuple[float, float]:
@@ -102,30 +105,35 @@ def exact(
         g = -1.0
         mu = rise(l_min - l, k_l)
     drive = mu * u_r
-    speed_2 = u_r * u_r + u_t * u_t
     scale = 1.0
     v_b = 0.0
     w_l = 0.0
     if drive != 0.0:
-        if drive * drive > BASE_GAIN_2 * speed_2 * c * c:
+        t = u_t / u_r
+        one = 1.0 + t * t
+        if mu * mu > BASE_GAIN_2 * one * c * c:
             v_b, scale = scaled_drive(drive, c, hypot(u_r, u_t))
         else:
             v_b = drive / c
-        if speed_2 > 0.0:
+        if one < HUGE:
             # Line up behind the hand. eta is the heading, from the base's, of the hand's line of motion (of u
             # if u_r >= 0, else of -u), y = g (k_t u_t + k_r u_r)/|u| the base's offset to the left of it and
             # L^2 = k_t^2 + k_r^2 the hand's distance: q = -y/L^2 + 2 g eta/L. Deviations die out with the double
             # eigenvalue -|v_b|/l, driving and reversing alike.
-            eta = psi_d + atan2(g * u_t, g * u_r)
+            eta = psi_d + atan(t)
             if eta > pi or eta < -pi:
                 eta -= copysign(2.0 * pi, eta)
-            length_2 = k_t * k_t + k_r * k_r
-            length_2 = max(length_2, LEVER_MIN_2 * l * l)
-            w_l = v_b * g * (2.0 * eta / sqrt(length_2) - (k_t * u_t + k_r * u_r) / (sqrt(speed_2) * length_2))
+            if k_r == 0.0 and k_t >= l:
+                w_l = v_b * (2.0 * g * eta - t / sqrt(one)) / k_t
+            else:
+                length_2 = max(k_t * k_t + k_r * k_r, LEVER_MIN_2 * l * l)
+                w_l = v_b * (2.0 * g * eta * sqrt(length_2) - (k_t * t + k_r) / sqrt(one)) / length_2
 
     # sigma depends on the sign of w_des, the bearing rate that is left to the arm if the base only drives and
     # lines up. That sign is the same for every sigma wherever driving helps at all: nothing is searched.
-    w_des = u_t * scale - (k_t + k_r * sn / c) * w_l + v_b * sn
+    w_des = u_t * scale - k_t * w_l + v_b * sn
+    if k_r != 0.0:
+        w_des -= k_r * sn / c * w_l
     sigma = rise(psi - psi_max, k_psi) if w_des >= 0.0 else rise(psi_min - psi, k_psi)
     lever = k_t
     if k_r != 0.0:
@@ -133,7 +141,7 @@ def exact(
         ratio = sigma * k_r / lever
         drive = v_b * c - (1.0 - sigma) * w_l * k_r - u_t * scale * ratio
         straight = c + sn * ratio
-        if drive * drive > BASE_GAIN_2 * speed_2 * straight * straight:
+        if drive * drive > BASE_GAIN_2 * (u_r * u_r + u_t * u_t) * straight * straight:
             v_b, more = scaled_drive(drive, straight, hypot(u_r, u_t))
             scale *= more
             w_l *= more
