@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
-from typing import final
+from typing import Any, final
 
 import msgspec
 from fastapi import WebSocket, WebSocketDisconnect
@@ -92,7 +92,7 @@ class Relay:
         self._revision = welcome.revision
         self._stopper = ThreadPoolExecutor(1, "stop")
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._tasks: set[asyncio.Task[object]] = set()
 
     def start(self) -> None:
         """Begin to receive states. Call on the event loop."""
@@ -113,8 +113,8 @@ class Relay:
             self._revision = revision
             self._spawn(self._refresh())
 
-    def _spawn(self, work: object) -> None:
-        task = asyncio.ensure_future(work)  # type: ignore[call-overload]
+    def _spawn(self, work: Coroutine[Any, Any, object]) -> None:
+        task: asyncio.Task[object] = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
