@@ -28,7 +28,8 @@ def main() -> None:
             print(promise.line(), flush=True)
             kept.append(promise)
     missed = [promise for promise in kept if promise.kept is False]
-    print(f"\n{len(kept) - len(missed)} of {len(kept)} as promised" + ("; missed:" if missed else ""))
+    promised = [promise for promise in kept if promise.kept is not None]
+    print(f"\n{len(promised) - len(missed)} of {len(promised)} as promised" + ("; missed:" if missed else ""))
     for promise in missed:
         print(promise.line())
     if target:
