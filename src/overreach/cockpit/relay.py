@@ -196,8 +196,10 @@ class Relay:
             answer = Refused("Too many questions at once.")
         else:
             page.asked += 1
-            async with page.turn:  # in the order in which they were asked
-                answer = await self.ask(request)
-            page.asked -= 1
+            try:
+                async with page.turn:  # in the order in which they were asked
+                    answer = await self.ask(request)
+            finally:
+                page.asked -= 1
         reason = answer.reason if isinstance(answer, Refused) else ""
         page.say(wire.encode(wire.AnswerToPage(question.id, not reason, reason)))
