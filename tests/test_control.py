@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from overreach.arm.planar import inverse
 from overreach.control import HandController
 from overreach.law.blend import step
-from overreach.law.laws import exact, paper, switch
+from overreach.law.laws import exact, paper
 from overreach.law.workspace import Workspace
 from overreach.model.planar import Arm2R, PlanarRobot
+from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Frame, Verdict
 from tests.strategies import speeds
@@ -25,7 +26,7 @@ DT = 0.005
 @given(st.sampled_from(["exact", "paper", "switch"]), st.integers(0, 10**6))
 def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
     """Under any commands and any law, base and joints keep their limits of speed and acceleration, always."""
-    law = {"exact": exact, "paper": paper, "switch": switch}[name]()
+    law = load_law(name)
     robot = KinematicRobot()
     controller = HandController(robot.model, law)
     arm, base = robot.model.arm, robot.model.base

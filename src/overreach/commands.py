@@ -91,8 +91,8 @@ def simulate(
     import msgspec
 
     from overreach.experiments.csvfile import check_writable, write_csv
-    from overreach.experiments.metrics import table
     from overreach.experiments.run import simulate as run_scenario
+    from overreach.experiments.summary import table
 
     if out is not None:
         check_writable(out)

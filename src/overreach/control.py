@@ -99,7 +99,9 @@ class HandController:
         u_r, u_t = self.commanded(v_c, w_c, l, psi, state.theta_b, polar.theta_e)
         split = self.law.split(l, psi, u_r, u_t)
         scale = split.scale
-        verdict = Verdict.BESIDE if scale < 1.0 else Verdict.MOVING
+        verdict = split.verdict
+        if verdict is Verdict.MOVING and scale < 1.0:
+            verdict = Verdict.BESIDE
 
         v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
         if self.limited:

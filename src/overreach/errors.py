@@ -4,7 +4,8 @@
     ├── SetupError (ValueError)       a value that cannot be used
     │   ├── WorkspaceError            limits of the workspace out of order or out of reach
     │   ├── ScenarioError             a scenario file that cannot be run
-    │   └── UnknownNameError          a name that nothing answers to
+    │   ├── UnknownNameError          a name that nothing answers to
+    │   └── MissingExtraError         a library that is not installed, with the line that brings it
     └── LinkError                     the other half cannot be reached or does not fit
 
 Each message is one line: what was wrong, what was got, what is valid, what to do.
@@ -44,6 +45,10 @@ class UnknownNameError(SetupError):
         near = difflib.get_close_matches(got, self.valid, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         super().__init__(f"unknown {kind} {got!r}.{hint} Valid: {', '.join(self.valid)}.{more and ' '}{more}")
+
+
+class MissingExtraError(SetupError):
+    """A library that a part of overreach needs is not installed; the message has the pip line."""
 
 
 class LinkError(OverreachError):

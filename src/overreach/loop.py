@@ -34,7 +34,7 @@ from overreach.link.messages import (
 )
 from overreach.link.robot_end import RobotEnd
 from overreach.model.planar import PlanarRobot
-from overreach.plugs import load_law
+from overreach.plugs import LAWS, load_law, loaded, names
 from overreach.robots.kinematic import KinematicRobot
 from overreach.timing import Lateness
 from overreach.types import RobotState, Verdict
@@ -143,12 +143,14 @@ class Loop:
         workspace = Workspace(settings.l_min, settings.l_max, settings.psi_min, settings.psi_max)
         self.model.check_workspace(workspace)
         blend = blend_from(settings.blend, settings.alpha, settings.beta, settings.q_l, settings.q_psi)
-        return load_law(settings.law, workspace, blend, self.model.mount)
+        return load_law(settings.law, workspace, blend, self.model.mount, self.model)
 
     def _configure(self, settings: Settings) -> None:
         """Use `settings`; raises SetupError, with nothing changed, where they cannot be used."""
         if settings.frame is not self.controller.frame and not self.gate.resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
+        if not loaded(settings.law) and settings.law in names(LAWS) and not self.gate.resting:
+            raise SetupError(f"Let go first: {settings.law!r} has to be loaded, which holds the loop up for a moment.")
         law, frame = self._law(settings), settings.frame
         self.gate.set_speed_scale(settings.speed_scale)
         self.controller.configure(law, frame)

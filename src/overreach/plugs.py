@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
@@ -14,7 +16,8 @@ from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 
 LAWS = "overreach.laws"
-"""Entry points to makers: (workspace, blend, mount) -> Law."""
+"""Entry points to makers of a Law. A maker names those of these it needs, each with a default:
+workspace: Workspace, blend: Blend, mount: Mount, robot: PlanarRobot."""
 ROBOTS = "overreach.robots"
 """Entry points to makers: () -> PlanarRobot."""
 
@@ -38,11 +41,30 @@ def _load(group: str, kind: str, name: str) -> Callable[..., Any]:
     return maker
 
 
+def takes(name: str) -> frozenset[str]:
+    """Return what the law called `name` is made from: some of workspace, blend, mount, robot."""
+    return frozenset(inspect.signature(_load(LAWS, "law", name)).parameters)
+
+
+def loaded(name: str) -> bool:
+    """Say whether the law called `name` is in memory: to load another may take a second (it may import numpy)."""
+    point = _points(LAWS).get(name)
+    return point is not None and point.module in sys.modules
+
+
 def load_law(
-    name: str, workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None
+    name: str,
+    workspace: Workspace | None = None,
+    blend: Blend | None = None,
+    mount: Mount | None = None,
+    robot: PlanarRobot | None = None,
 ) -> Law:
-    """Return the law called `name`; raises UnknownNameError with the valid names."""
-    law: Law = _load(LAWS, "law", name)(workspace, blend, mount)
+    """Return the law called `name`, made from those of the other arguments that its maker names.
+
+    Raises UnknownNameError with the valid names, or MissingExtraError where it needs a library that is not installed.
+    """
+    given = {"workspace": workspace, "blend": blend, "mount": mount, "robot": robot}
+    law: Law = _load(LAWS, "law", name)(**{key: given[key] for key in takes(name) if key in given})
     return law
 
 

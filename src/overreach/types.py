@@ -47,6 +47,7 @@ class Verdict(enum.StrEnum):
     NOT_FINITE = "not_finite", "Refused", "A command held a value that is not finite."
     OTHER_OPERATOR = "other_operator", "Refused", "Another operator has armed the robot."
     OUT_OF_ORDER = "out_of_order", "Refused", "An old or repeated command came."
+    NO_SOLUTION = "no_solution", "No solution", "The law's solver found no answer: the robot is to stand still."
     RELEASED = "released", "Ready", "Hold the pad to move the hand."
     JOINT_LIMIT = "joint_limit", "Scaled", "A joint is near its limit: the whole command is scaled."
     OUT_OF_REACH = "out_of_reach", "Out of reach", "The arm is at the end of its reach."
@@ -107,7 +108,8 @@ class Split(Record, frozen=True):
 
     mu, sigma: the base's share of linear and of angular motion, 0 (arm) to 1 (base);
     v_b [m/s], w_b [rad/s]: base twist; v_m = dl/dt [m/s], w_m = dpsi/dt [rad/s]: the arm's rates;
-    scale: the part of the command that is feasible, 0 to 1 (all rates are scaled alike).
+    scale: the part of the command that is feasible, 0 to 1 (all rates are scaled alike);
+    verdict: MOVING, or why a law has nothing to give (then all rates and the scale are 0).
     """
 
     mu: float
@@ -117,6 +119,7 @@ class Split(Record, frozen=True):
     v_m: float
     w_m: float
     scale: float = 1.0
+    verdict: Verdict = Verdict.MOVING
 
 
 class RobotState(Record, frozen=True):

@@ -13,7 +13,7 @@ from scipy.special import wrightomega
 
 from overreach.arm.planar import hand_in_world, inverse
 from overreach.control import HandController
-from overreach.experiments.run import Run, simulate, steps
+from overreach.experiments.run import Run, law_of, simulate, steps
 from overreach.experiments.scenario import parse_scenario
 from overreach.law.blend import tanh
 from overreach.law.laws import exact
@@ -195,7 +195,8 @@ def test_smoothstep_never_leaves_its_band(law: str, duration: float) -> None:
         t += chance.uniform(0.2, 8.0)
     text = f'[law]\nblend = "smoothstep"\n[command]\nduration = {duration}\ndt = 0.02\nsegments = [{", ".join(rows)}]'
     least_l = least_psi = math.inf
-    for row, error, _ in steps(parse_scenario(text), law):
+    scenario = parse_scenario(text)
+    for row, error, _ in steps(scenario, law_of(scenario, law)):
         least_l = min(least_l, row.l - 0.40, 0.90 - row.l)
         least_psi = min(least_psi, row.psi + 0.65, 0.65 - row.psi)
         if law == "exact":

@@ -11,7 +11,7 @@ from nicegui import ui
 from overreach.cockpit.relay import Relay
 from overreach.law.blend import BLENDS
 from overreach.link.messages import Accepted, Refused, Settings
-from overreach.plugs import LAWS, names
+from overreach.plugs import LAWS, names, takes
 from overreach.types import Frame
 
 THROTTLE_S = 0.1
@@ -142,8 +142,8 @@ class SettingsPanel:
             slider.value = value
         self._length.value = {"min": settings.l_min, "max": settings.l_max}
         self._bearing.value = {"min": settings.psi_min, "max": settings.psi_max}
-        switching = settings.law == "switch"
-        self._tanh.visible = settings.blend == "tanh" and not switching
-        self._smooth.visible = settings.blend == "smoothstep" and not switching
-        self._blend.set_enabled(not switching)
+        blending = "blend" in takes(settings.law)
+        self._tanh.visible = settings.blend == "tanh" and blending
+        self._smooth.visible = settings.blend == "smoothstep" and blending
+        self._blend.set_enabled(blending)
         self._quiet = False

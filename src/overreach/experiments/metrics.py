@@ -1,113 +1,102 @@
-"""What happened in a run, in numbers. Each with its formula and unit."""
+"""What a run is measured by: one function each, with its formula and unit.
+
+Rows are the steps of a run, dt [s] apart; errors are, per step, e = the EE's true rigid-body velocity less the
+commanded one, in polar components [m/s]. Sums stand for integrals: every rate is held for its step.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from math import hypot, sqrt
+from math import cos, hypot, sin, sqrt
 from typing import TYPE_CHECKING
 
-from overreach.types import Record, Verdict
+from overreach.law.workspace import Workspace
 
 if TYPE_CHECKING:
     from overreach.experiments.run import Row
-    from overreach.experiments.scenario import Scenario
+
+ARM_BELOW, BASE_ABOVE = 0.25, 0.75
+"""A share below the first is the arm's, above the second the base's; between them nothing changes hands."""
+
+Errors = Sequence[tuple[float, float]]
 
 
-class Summary(Record, frozen=True):
-    """The table that `overreach simulate` prints; e is the EE's true velocity less the commanded one.
+def ee_error_rms(errors: Errors) -> float:
+    """Return sqrt(mean |e|^2) [m/s]."""
+    return sqrt(sum(e_r * e_r + e_t * e_t for e_r, e_t in errors) / len(errors))
 
-    ee_error_rms, ee_error_max [m/s]: sqrt(mean |e|^2), max |e|;
-    hand_travel, base_travel [m], base_turn [rad]: sum |v| dt of hand (by its positions) and base, sum |w_b| dt;
-    outside_s [s]: time with l or psi outside the workspace; outside_l [m], outside_psi [rad]: how far at most;
-    authority_changes: how often the greater share went from arm to base or back, mu and sigma together,
-    counted where something is commanded; psi_end [rad]: bearing of the hand at the end;
-    verdicts: steps per verdict.
-    """
 
-    scenario: str
-    law: str
-    frame: str
-    blend: str
-    steps: int
-    duration: float
-    ee_error_rms: float
-    ee_error_max: float
-    hand_travel: float
-    base_travel: float
-    base_turn: float
-    outside_s: float
-    outside_l: float
-    outside_psi: float
-    authority_changes: int
-    psi_end: float
-    verdicts: dict[str, int]
+def ee_error_max(errors: Errors) -> float:
+    """Return max |e| [m/s]."""
+    return max(hypot(*error) for error in errors)
+
+
+def ee_path_error(rows: Sequence[Row], errors: Errors, yaw: float, dt: float) -> float:
+    """Return max over t of |integral of e| [m], e turned into the world: how far the hand was led off its command."""
+    x = y = worst = 0.0
+    for row, (e_r, e_t) in zip(rows, errors, strict=True):
+        bearing = row.theta_b + row.psi + yaw
+        c, s = cos(bearing), sin(bearing)
+        x += (e_r * c - e_t * s) * dt
+        y += (e_r * s + e_t * c) * dt
+        worst = max(worst, hypot(x, y))
+    return worst
+
+
+def hand_travel(rows: Sequence[Row]) -> float:
+    """Return sum |p_e(k+1) - p_e(k)| [m]: the hand's path, by its positions."""
+    return sum(hypot(b.x_e - a.x_e, b.y_e - a.y_e) for a, b in pairwise(rows))
+
+
+def travel(rates: Iterable[float], dt: float) -> float:
+    """Return sum |rate| dt: path of the base [m] of v_b, rotation of the base [rad] of w_b."""
+    return sum(abs(rate) for rate in rates) * dt
+
+
+def peak(values: Iterable[float]) -> float:
+    """Return max |value|, in the value's unit."""
+    return max((abs(value) for value in values), default=0.0)
+
+
+def slopes(values: Sequence[float], dt: float) -> list[float]:
+    """Return (x(k+1) - x(k))/dt: rates of positions, accelerations of rates."""
+    return [(b - a) / dt for a, b in pairwise(values)]
+
+
+def total_variation(values: Sequence[float]) -> float:
+    """Return sum |x(k+1) - x(k)|, in the value's unit: how much is changed in all, back and forth."""
+    return sum(abs(b - a) for a, b in pairwise(values))
 
 
 def authority_changes(rows: Sequence[Row]) -> int:
-    """Count the crossings of mu = 1/2 while v_c is not 0, and of sigma = 1/2 while w_c is not 0."""
-    count = 0
-    for share, command in (("mu", "v_c"), ("sigma", "w_c")):
-        sides = [getattr(row, share) > 0.5 for row in rows if getattr(row, command) != 0.0]
-        count += sum(a != b for a, b in pairwise(sides))
+    """Count how often mu or sigma passes from arm (< 1/4) to base (> 3/4) or back, while its command is not 0."""
+    return _changes(row.mu for row in rows if row.v_c != 0.0) + _changes(row.sigma for row in rows if row.w_c != 0.0)
+
+
+def _changes(shares: Iterable[float]) -> int:
+    count, side = 0, 0
+    for share in shares:
+        now = 1 if share > BASE_ABOVE else -1 if share < ARM_BELOW else side
+        count += now * side < 0
+        side = now
     return count
 
 
-def summarise(
-    scenario: Scenario,
-    law: str,
-    frame: str,
-    rows: Sequence[Row],
-    errors: Sequence[tuple[float, float]],
-    verdicts: dict[Verdict, int],
-) -> Summary:
-    """Return the summary of a run."""
-    dt = scenario.dt
-    space = scenario.model.workspace
-    size = [hypot(*error) for error in errors]
-    beyond_l = [max(row.l - space.l_max, space.l_min - row.l, 0.0) for row in rows]
-    beyond_psi = [max(row.psi - space.psi_max, space.psi_min - row.psi, 0.0) for row in rows]
-    return Summary(
-        scenario=scenario.name,
-        law=law,
-        frame=frame,
-        blend=scenario.blend.name if law != "switch" else "step",
-        steps=len(rows),
-        duration=len(rows) * dt,
-        ee_error_rms=sqrt(sum(e * e for e in size) / len(size)),
-        ee_error_max=max(size),
-        hand_travel=sum(hypot(b.x_e - a.x_e, b.y_e - a.y_e) for a, b in pairwise(rows)),
-        base_travel=sum(abs(row.v_b) for row in rows) * dt,
-        base_turn=sum(abs(row.w_b) for row in rows) * dt,
-        outside_s=sum(a > 0.0 or b > 0.0 for a, b in zip(beyond_l, beyond_psi, strict=True)) * dt,
-        outside_l=max(beyond_l),
-        outside_psi=max(beyond_psi),
-        authority_changes=authority_changes(rows),
-        psi_end=rows[-1].psi,
-        verdicts={verdict.value: count for verdict, count in verdicts.items()},
+def beyond(rows: Sequence[Row], space: Workspace) -> tuple[list[float], list[float]]:
+    """Return, per step, how far l [m] and psi [rad] are outside the workspace; 0 inside."""
+    return (
+        [max(row.l - space.l_max, space.l_min - row.l, 0.0) for row in rows],
+        [max(row.psi - space.psi_max, space.psi_min - row.psi, 0.0) for row in rows],
     )
 
 
-LINES: tuple[tuple[str, str, str], ...] = (
-    ("ee_error_rms", "EE velocity error, rms", "m/s"),
-    ("ee_error_max", "EE velocity error, max", "m/s"),
-    ("hand_travel", "hand path", "m"),
-    ("base_travel", "base path", "m"),
-    ("base_turn", "base rotation", "rad"),
-    ("outside_s", "time outside the workspace", "s"),
-    ("outside_l", "  farthest, in l", "m"),
-    ("outside_psi", "  farthest, in psi", "rad"),
-    ("authority_changes", "authority changes", ""),
-    ("psi_end", "psi at the end", "rad"),
-)
+def manipulability_min(rows: Sequence[Row], links: tuple[float, float]) -> float:
+    """Return min a b |sin theta_2| [m^2], sqrt(det(J J^T)) of the two-link arm: 0 where it is straight or folded."""
+    return links[0] * links[1] * min(abs(sin(row.theta_2)) for row in rows)
 
 
-def table(summary: Summary) -> str:
-    """Return the summary as a table to print."""
-    head = (
-        f"{summary.scenario}: law {summary.law}, frame {summary.frame}, blend {summary.blend}, "
-        f"{summary.steps} steps, {summary.duration:g} s"
-    )
-    body = [f"  {label:<28}{getattr(summary, key):>12.4g}  {unit}".rstrip() for key, label, unit in LINES]
-    told = ", ".join(f"{name} {count}" for name, count in summary.verdicts.items())
-    return "\n".join([head, *body, f"  verdicts [steps]: {told}"])
+def saturated(rates: Iterable[tuple[float, ...]], most: tuple[float, ...]) -> float:
+    """Return the part of the steps in which at least one rate is at its limit (within 1e-6 of it)."""
+    held = [any(abs(rate) >= top * (1.0 - 1e-6) for rate, top in zip(step, most, strict=True)) for step in rates]
+    return sum(held) / len(held)

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 from overreach.arm.planar import forward, hand_in_world, polar_rates, wrap
 from overreach.control import HandController
-from overreach.experiments.metrics import Summary, summarise
 from overreach.experiments.scenario import Scenario, load_scenario
+from overreach.experiments.summary import Summary, summarise
 from overreach.gate.limits import limit_speed, slew
 from overreach.law.authority import ee_velocity
+from overreach.law.laws import Law
 from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Verdict
@@ -56,12 +57,18 @@ class Run(NamedTuple):
     summary: Summary
 
 
-def steps(scenario: Scenario, law: str = "exact") -> Iterator[tuple[Row, tuple[float, float], Verdict]]:
+def law_of(scenario: Scenario, name: str) -> Law:
+    """Return the law called `name` for the robot, workspace and blend of `scenario`."""
+    model = scenario.model
+    return load_law(name, model.workspace, scenario.blend, model.mount, model)
+
+
+def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, float], Verdict]]:
     """Yield (row, EE velocity error (radial, tangential) [m/s], verdict) step by step, in constant memory."""
     model = scenario.model
     controller = HandController(
         model,
-        load_law(law, model.workspace, scenario.blend, model.mount),
+        law,
         scenario.frame,
         limited=scenario.limits is not None,
         whole_steps=True,
@@ -107,13 +114,15 @@ def steps(scenario: Scenario, law: str = "exact") -> Iterator[tuple[Row, tuple[f
         )  # fmt: skip
 
 
-def simulate(scenario: Scenario | str, law: str = "exact") -> Run:
-    """Run `scenario` (or the built-in of that name, or a TOML file) with the law called `law`.
+def simulate(scenario: Scenario | str, law: Law | str = "exact") -> Run:
+    """Run `scenario` (or the built-in of that name, or a TOML file) with `law`, or the law of that name.
 
     Raises SetupError when the scenario or the law cannot be used; a run itself raises nothing.
     """
     if isinstance(scenario, str):
         scenario = load_scenario(scenario)
+    if isinstance(law, str):
+        law = law_of(scenario, law)
     rows: list[Row] = []
     errors: list[tuple[float, float]] = []
     verdicts: dict[Verdict, int] = {}
@@ -121,5 +130,4 @@ def simulate(scenario: Scenario | str, law: str = "exact") -> Run:
         rows.append(row)
         errors.append(error)
         verdicts[verdict] = verdicts.get(verdict, 0) + 1
-    frame = scenario.frame or load_law(law).frame
-    return Run(scenario, law, rows, errors, summarise(scenario, law, frame, rows, errors, verdicts))
+    return Run(scenario, law.name, rows, errors, summarise(scenario, law, rows, errors, verdicts))

@@ -114,6 +114,6 @@ def paper(workspace: Workspace | None = None, blend: Blend | None = None, mount:
     )
 
 
-def switch(workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None) -> Law:
-    """Kwon et al. 2026 without blending, (12) and (13): the hard switch. `blend` is not used."""
+def switch(workspace: Workspace | None = None, mount: Mount | None = None) -> Law:
+    """Kwon et al. 2026 without blending, (12) and (13): the hard switch."""
     return SharingLaw("switch", Frame.POLAR, False, authority.paper, workspace or Workspace(), step(), mount or Mount())

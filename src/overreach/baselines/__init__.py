@@ -1,0 +1,1 @@
+"""What people use instead: other laws on the same Protocol, to be compared with."""

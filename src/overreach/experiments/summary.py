@@ -1,0 +1,134 @@
+"""A run in one record, and that record as the table that `overreach simulate` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from overreach.experiments import metrics
+from overreach.law.laws import Law
+from overreach.types import Record, Verdict
+
+if TYPE_CHECKING:
+    from overreach.experiments.run import Row
+    from overreach.experiments.scenario import Scenario
+
+
+class Summary(Record, frozen=True):
+    """What happened; formulas and units are in `overreach.experiments.metrics`.
+
+    ee_error_rms, ee_error_max [m/s]; ee_path_error [m]; hand_travel, base_travel [m]; base_turn [rad];
+    peak_v_b [m/s], peak_w_b [rad/s], peak_dtheta [rad/s], peak_ddtheta [rad/s^2] (of the worse joint);
+    variation_v_b [m/s], variation_w_b [rad/s]; saturated: part of the steps with a rate at its limit;
+    authority_changes, flips_per_s [1/s]; outside_s [s], outside_l [m], outside_psi [rad]: time outside the workspace
+    and how far at most; manipulability_min [m^2]; psi_end [rad]: bearing at the end; verdicts: steps of each.
+    """
+
+    scenario: str
+    law: str
+    frame: str
+    blend: str
+    steps: int
+    duration: float
+    ee_error_rms: float
+    ee_error_max: float
+    ee_path_error: float
+    hand_travel: float
+    base_travel: float
+    base_turn: float
+    peak_v_b: float
+    peak_w_b: float
+    peak_dtheta: float
+    peak_ddtheta: float
+    variation_v_b: float
+    variation_w_b: float
+    saturated: float
+    authority_changes: int
+    flips_per_s: float
+    outside_s: float
+    outside_l: float
+    outside_psi: float
+    manipulability_min: float
+    psi_end: float
+    verdicts: dict[str, int]
+
+
+def summarise(
+    scenario: Scenario, law: Law, rows: Sequence[Row], errors: metrics.Errors, verdicts: dict[Verdict, int]
+) -> Summary:
+    """Return the summary of a run."""
+    dt, model = scenario.dt, scenario.model
+    v_b, w_b = [row.v_b for row in rows], [row.w_b for row in rows]
+    one = metrics.slopes([row.theta_1 for row in rows], dt)
+    two = metrics.slopes([row.theta_2 for row in rows], dt)
+    beyond_l, beyond_psi = metrics.beyond(rows, model.workspace)
+    changes = metrics.authority_changes(rows)
+    duration = len(rows) * dt
+    return Summary(
+        scenario=scenario.name,
+        law=law.name,
+        frame=scenario.frame or law.frame,
+        blend=law.blend.name,
+        steps=len(rows),
+        duration=duration,
+        ee_error_rms=metrics.ee_error_rms(errors),
+        ee_error_max=metrics.ee_error_max(errors),
+        ee_path_error=metrics.ee_path_error(rows, errors, model.mount.yaw, dt),
+        hand_travel=metrics.hand_travel(rows),
+        base_travel=metrics.travel(v_b, dt),
+        base_turn=metrics.travel(w_b, dt),
+        peak_v_b=metrics.peak(v_b),
+        peak_w_b=metrics.peak(w_b),
+        peak_dtheta=max(metrics.peak(one), metrics.peak(two)),
+        peak_ddtheta=max(metrics.peak(metrics.slopes(one, dt)), metrics.peak(metrics.slopes(two, dt))),
+        variation_v_b=metrics.total_variation(v_b),
+        variation_w_b=metrics.total_variation(w_b),
+        saturated=metrics.saturated(
+            zip(v_b[:-1], w_b[:-1], one, two, strict=True) if one else [(v_b[0], w_b[0], 0.0, 0.0)],
+            (model.base.v_max, model.base.w_max, *model.arm.dtheta_max),
+        ),
+        authority_changes=changes,
+        flips_per_s=changes / duration,
+        outside_s=sum(a > 0.0 or b > 0.0 for a, b in zip(beyond_l, beyond_psi, strict=True)) * dt,
+        outside_l=max(beyond_l),
+        outside_psi=max(beyond_psi),
+        manipulability_min=metrics.manipulability_min(rows, model.arm.links),
+        psi_end=rows[-1].psi,
+        verdicts={verdict.value: count for verdict, count in verdicts.items()},
+    )
+
+
+LINES: tuple[tuple[str, str, str], ...] = (
+    ("ee_error_rms", "EE velocity error, rms", "m/s"),
+    ("ee_error_max", "EE velocity error, max", "m/s"),
+    ("ee_path_error", "EE path error", "m"),
+    ("hand_travel", "hand path", "m"),
+    ("base_travel", "base path", "m"),
+    ("base_turn", "base rotation", "rad"),
+    ("peak_v_b", "peak |v_b|", "m/s"),
+    ("peak_w_b", "peak |w_b|", "rad/s"),
+    ("peak_dtheta", "peak joint speed", "rad/s"),
+    ("peak_ddtheta", "peak joint acceleration", "rad/s^2"),
+    ("variation_v_b", "total variation of v_b", "m/s"),
+    ("variation_w_b", "total variation of w_b", "rad/s"),
+    ("saturated", "steps with a rate at its limit", "of 1"),
+    ("authority_changes", "authority changes", ""),
+    ("flips_per_s", "  per second", "1/s"),
+    ("outside_s", "time outside the workspace", "s"),
+    ("outside_l", "  farthest, in l", "m"),
+    ("outside_psi", "  farthest, in psi", "rad"),
+    ("manipulability_min", "least manipulability", "m^2"),
+    ("psi_end", "psi at the end", "rad"),
+)
+"""Field, label, unit: in the order in which they are shown."""
+
+
+def table(summary: Summary) -> str:
+    """Return the summary as a table to print."""
+    head = (
+        f"{summary.scenario}: law {summary.law}, frame {summary.frame}, blend {summary.blend}, "
+        f"{summary.steps} steps, {summary.duration:g} s"
+    )
+    body = [f"  {label:<32}{getattr(summary, key):>12.4g}  {unit}".rstrip() for key, label, unit in LINES]
+    told = ", ".join(f"{name} {count}" for name, count in summary.verdicts.items())
+    return "\n".join([head, *body, f"  verdicts [steps]: {told}"])

@@ -1,0 +1,1 @@
+"""Public conformance suites: what every plug must pass, for those who write one."""

@@ -1,0 +1,160 @@
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from overreach.arm.planar import inverse, polar_rates
+from overreach.baselines.holistic import DAMPER_START, DAMPER_STOP, damper, holistic
+from overreach.baselines.qp import DAMPING, qp
+from overreach.baselines.solver import SOLVERS, solver
+from overreach.control import HandController
+from overreach.errors import SetupError, UnknownNameError
+from overreach.law.authority import ee_velocity
+from overreach.law.laws import Law
+from overreach.model.planar import PlanarRobot
+from overreach.robots.kinematic import KinematicRobot
+from overreach.types import Verdict
+from tests.strategies import bearings, lengths, speeds
+
+pytestmark = pytest.mark.filterwarnings("ignore:OSQP exited", "ignore:.*raise_error:PendingDeprecationWarning")
+AGREE = 1e-4
+REFERENCE = qp(solver="quadprog")
+EACH = {name: qp(solver=name) for name in SOLVERS}
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+@settings(max_examples=40)
+@given(lengths, bearings, st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
+def test_solvers_agree(name: str, l: float, psi: float, u_r: float, u_t: float) -> None:
+    """Every solver finds what quadprog finds, to 1e-4, with and without limits at work."""
+    want, got = REFERENCE.split(l, psi, u_r, u_t), EACH[name].split(l, psi, u_r, u_t)
+    assert (got.v_b, got.w_b, got.v_m, got.w_m) == pytest.approx((want.v_b, want.w_b, want.v_m, want.w_m), abs=AGREE)
+
+
+@given(lengths, bearings, speeds, speeds)
+def test_qp_is_damped_least_squares_inside_its_limits(l: float, psi: float, u_r: float, u_t: float) -> None:
+    """Where no limit is at work the solution is the closed form q = J^T (J J^T + lambda I)^-1 v_ref."""
+    law = EACH["daqp"]
+    theta = inverse(l, psi, 0.5, 0.5, 1)
+    j_l, at_rest = polar_rates(theta[1], 0.0, 1.0, 0.5, 0.5)
+    J = np.array([[math.cos(psi), 0.0, 0.0, j_l], [0.0, 1.0, 1.0, at_rest]])
+    q = J.T @ np.linalg.solve(J @ J.T + DAMPING * np.eye(2), [u_r, u_t / l])
+    if np.all(np.abs(q) < law.q_max):
+        found = law.step(*theta, u_r, u_t / l)
+        assert found is not None
+        assert found == pytest.approx(q, abs=1e-6)
+
+
+@given(lengths, bearings, st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
+def test_qp_keeps_its_limits_and_is_optimal(l: float, psi: float, v_c: float, w_c: float) -> None:
+    """The rates are within q_max, and no feasible step downhill is left (projected gradient is zero)."""
+    law = EACH["daqp-direct"]
+    theta = inverse(l, psi, 0.5, 0.5, 1)
+    found = law.step(*theta, v_c, w_c)
+    assert found is not None
+    assert np.all(np.abs(found) <= law.q_max + 1e-6)
+    j_l, j_psi = polar_rates(theta[1], 0.0, 1.0, 0.5, 0.5)
+    P, q = law.problem(psi, j_l, j_psi, v_c, w_c)
+    downhill = found - (P @ found + q)
+    assert np.clip(downhill, -law.q_max, law.q_max) == pytest.approx(found, abs=1e-5)
+
+
+def test_a_solver_that_fails_is_a_verdict_and_a_zero() -> None:
+    """A solver that gives up, or raises, makes the law answer zero with NO_SOLUTION; nothing is raised."""
+    starved = qp(solver="osqp", max_iter=1)
+    refused = qp(solver="daqp", no_such_setting=1.0)
+    for law in (starved, refused):
+        split = law.split(0.6, 0.2, 0.4, 0.1)
+        assert (split.v_b, split.w_b, split.v_m, split.w_m, split.scale) == (0.0,) * 5
+        assert split.verdict is Verdict.NO_SOLUTION
+
+
+@pytest.mark.parametrize("law", [EACH["daqp"], holistic()], ids=lambda law: law.name)
+def test_what_is_not_finite_has_no_solution(law: Law) -> None:
+    """A command that is not a number is answered with zero and NO_SOLUTION."""
+    for bad in (math.nan, math.inf):
+        assert law.split(0.6, 0.2, bad, 0.0).verdict is Verdict.NO_SOLUTION
+
+
+def test_no_solution_reaches_whoever_drives() -> None:
+    """In a controller no solution means: the robot stands still, and the verdict says why."""
+    robot = KinematicRobot()
+    controller = HandController(robot.model, qp(solver="osqp", max_iter=1))
+    step = controller.step(robot.read(0.0), 0.4, 0.0, 0.005)
+    assert step.verdict is Verdict.NO_SOLUTION
+    assert (step.twist.v_b, step.twist.w_b, *step.dtheta) == (0.0,) * 4
+
+
+def test_unknown_solvers_and_dampings_are_refused() -> None:
+    """A solver that is not there is refused with those that are; so is a damping that damps nothing."""
+    with pytest.raises(UnknownNameError, match="Did you mean 'quadprog'"):
+        solver("quadprg")
+    for bad in (0.0, -1.0, math.nan):
+        with pytest.raises(SetupError, match="damping"):
+            qp(damping=bad)
+
+
+@given(lengths, bearings, st.floats(0.05, 0.4), speeds, st.randoms(use_true_random=False))
+def test_holistic_finds_the_best_of_all_that_is_allowed(
+    l: float, psi: float, u_r: float, u_t: float, chance: random.Random
+) -> None:
+    """J q + delta = u in true kinematics, q within limits and dampers, and nothing allowed costs less."""
+    law = holistic()
+    theta = inverse(l, psi, 0.5, 0.5, 1)
+    j_l, j_psi = polar_rates(theta[1], 0.0, 1.0, 0.5, 0.5)
+    Q, C, lb, ub, A, b = law.problem(l, psi, theta, j_l, j_psi, u_r, u_t)
+
+    def completed(q: list[float]) -> Any:
+        """Return q with the slack that makes it carry out the command."""
+        return np.array([*q, *(b - A[:, :4] @ q)])
+
+    def cost(x: Any) -> float:
+        return float(0.5 * x @ Q @ x + C @ x)
+
+    split = law.split(l, psi, u_r, u_t)
+    dtheta_2 = split.v_m / j_l
+    x = completed([split.v_b, split.w_b, split.w_m - j_psi * dtheta_2, dtheta_2])
+    assert np.all(x >= lb - 1e-6)
+    assert np.all(x <= ub + 1e-6)
+    got = ee_velocity(l, psi, split.v_b, split.w_b, split.v_m, split.w_m, (0.0, 0.0, 0.0))
+    assert got == pytest.approx(b - x[4:], abs=1e-9)
+    for _ in range(20):
+        near = chance.choice((1.0, 0.1, 0.01))
+        q = [chance.uniform(low, high) for low, high in zip(lb[:4], ub[:4], strict=True)]
+        other = completed([(1.0 - near) * mine + near * it for mine, it in zip(x[:4], q, strict=True)])
+        if np.all(np.abs(other[4:]) <= ub[4:]):
+            assert cost(other) >= cost(x) - 1e-6
+
+
+def test_holistic_turns_the_base_to_the_hand_and_keeps_the_arm_bent() -> None:
+    """Pushed on, the base comes to face the hand, and the arm goes to where it is most manipulable: theta_2 = pi/2."""
+    robot = KinematicRobot(PlanarRobot(), psi=0.4, l=0.8)
+    controller = HandController(robot.model, holistic())
+    for k in range(4000):
+        step = controller.step(robot.read(k * 0.005), 0.3, 0.0, 0.005)
+        robot.write(step.twist, step.dtheta, k * 0.005)
+    assert abs(step.polar.psi) < 0.02
+    assert robot.true.theta[1] == pytest.approx(math.pi / 2, abs=0.2)
+
+
+def test_the_damper_slows_stops_and_backs_out() -> None:
+    """Towards a joint limit: free far away, slower within 0.9 rad, still at 0.1 rad, back out nearer than that."""
+    assert damper(DAMPER_START + 1e-9) == math.inf
+    assert damper(DAMPER_START) == pytest.approx(1.0)
+    assert damper(DAMPER_STOP) == pytest.approx(0.0)
+    assert damper(0.0) < 0.0
+
+
+@pytest.mark.parametrize("end", [0.05, 0.999])
+def test_holistic_backs_out_of_the_arms_ends(end: float) -> None:
+    """Near straight and near folded the elbow is driven back, whatever is commanded."""
+    law = holistic()
+    outward = end > 0.5
+    split = law.split(end, 0.0, 0.4 if outward else -0.4, 0.0)
+    assert split.v_m < 0.0 if outward else split.v_m > 0.0
