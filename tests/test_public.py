@@ -12,7 +12,21 @@ import pytest
 import overreach
 
 ROOT = Path(overreach.__file__).parent
-ORDER = ["errors", "extras", "types", "clock", "timing", "link", "gate", "law", "model", "arm", "baselines", "robots"]
+ORDER = [
+    "errors",
+    "extras",
+    "types",
+    "clock",
+    "timing",
+    "link",
+    "gate",
+    "law",
+    "model",
+    "arm",
+    "fast",
+    "baselines",
+    "robots",
+]
 ORDER += ["plugs", "testing"]
 COMPOSE = {
     "control",
@@ -25,6 +39,7 @@ COMPOSE = {
     "__init__",
     "cockpit",
     "experiments",
+    "bench",
 }
 
 PUBLIC = {
@@ -103,6 +118,7 @@ def test_left_does_not_import_right() -> None:
         "gate": {"errors", "types"},
         "model": {"errors", "types", "law"},
         "arm": {"errors", "types", "law", "model"},
+        "fast": {"errors", "types", "law", "model", "arm"},
         "baselines": {"errors", "extras", "types", "law", "model", "arm"},
         "robots": {"errors", "types", "law", "model", "arm"},
         "plugs": {"errors", "types", "law", "model"},

@@ -90,12 +90,12 @@ def simulate(
     """
     import msgspec
 
-    from overreach.experiments.csvfile import check_writable, write_csv
+    from overreach.experiments.files import check_writable, write_csv
     from overreach.experiments.run import simulate as run_scenario
     from overreach.experiments.summary import table
 
     if out is not None:
-        check_writable(out)
+        check_writable(out, "--out")
     run = run_scenario(scenario, law)
     if out is not None:
         write_csv(out, run.rows)
@@ -103,6 +103,25 @@ def simulate(
         print(msgspec.json.encode(run.summary).decode())
     else:
         print(table(run.summary))
+
+
+@app.command
+def bench(json: Path | None = None) -> None:
+    """Measure what a control step costs: plain, compiled and many at once, beside the quadratic programs.
+
+    Args:
+        json: File to write the numbers to.
+    """
+    from overreach.bench.report import text
+    from overreach.bench.run import measure
+    from overreach.experiments.files import check_writable, write_json
+
+    if json is not None:
+        check_writable(json, "--json")
+    found = measure()
+    if json is not None:
+        write_json(json, found)
+    print(text(found))
 
 
 @app.command

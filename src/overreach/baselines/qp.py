@@ -71,15 +71,18 @@ class PaperQP:
         """Return the rates for a problem, or None: the solver's core alone."""
         return self._solve(P, q, self._least, self.q_max)
 
-    def step(self, theta_1: float, theta_2: float, v_c: float, w_c: float) -> Array | None:
-        """Return (v_b, w_b, dtheta_1, dtheta_2) for joints [rad] and a command: the whole step."""
+    def model(self, theta_1: float, theta_2: float, v_c: float, w_c: float) -> tuple[Array, Array]:
+        """Return `problem` for joints [rad] and a command: forward kinematics, Jacobian, P and q."""
         a, b = self._arm.links
-        # Forward kinematics and Jacobian in one: e = a + b cos theta_2, f = b sin theta_2.
         f = b * math.sin(theta_2)
         e = a + b * math.cos(theta_2)
         l_2 = e * e + f * f
         psi = theta_1 + math.atan2(f, e)
-        return self.solve(*self.problem(psi, -a * f / math.sqrt(l_2), (l_2 - a * e) / l_2, v_c, w_c))
+        return self.problem(psi, -a * f / math.sqrt(l_2), (l_2 - a * e) / l_2, v_c, w_c)
+
+    def step(self, theta_1: float, theta_2: float, v_c: float, w_c: float) -> Array | None:
+        """Return (v_b, w_b, dtheta_1, dtheta_2) for joints [rad] and a command: the whole step."""
+        return self.solve(*self.model(theta_1, theta_2, v_c, w_c))
 
     def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
         """Return the solution as a split, with v_c = u_r and w_c = u_t/l; zero and NO_SOLUTION where there is none."""

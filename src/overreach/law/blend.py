@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
+from math import isfinite
+from math import tanh as hyperbolic_tangent
 
 from overreach.errors import SetupError, UnknownNameError
 from overreach.types import Record
@@ -19,7 +20,7 @@ Rise = Callable[[float, float], float]
 
 def rise_tanh(e: float, alpha: float) -> float:
     """Return 1/2 (1 + tanh(alpha e)); alpha [1/m or 1/rad]. Source: Kwon et al. 2026, (14), (15)."""
-    return 0.5 + 0.5 * math.tanh(alpha * e)
+    return 0.5 + 0.5 * hyperbolic_tangent(alpha * e)
 
 
 def rise_step(e: float, _k: float) -> float:
@@ -57,7 +58,7 @@ class Blend(Record, frozen=True):
 
 def _positive(**values: float) -> None:
     for name, value in values.items():
-        if not (math.isfinite(value) and value > 0.0):
+        if not (isfinite(value) and value > 0.0):
             raise SetupError(f"{name} must be a finite number > 0, got {value:g}")
 
 

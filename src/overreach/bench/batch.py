@@ -1,0 +1,111 @@
+"""Many robots at once: steps per second against numpy, by the size of the batch and by threads, and the memory."""
+
+from __future__ import annotations
+
+import os
+import resource
+import statistics
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+
+from overreach.bench.measure import spread
+from overreach.bench.vectorised import numpy_step
+from overreach.clock import nanoseconds
+from overreach.fast.batch import IN, OUT, Array, compile_batch
+from overreach.fast.robot import constants
+from overreach.law.blend import smoothstep, tanh
+from overreach.model.planar import PlanarRobot
+
+SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
+HEADLINE = 1_000_000
+"""The size of which the throughput is quoted."""
+FEW_ROBOTS = 20_000
+"""Robots stepped in one measurement of a small batch, by repeating it."""
+
+
+def random_states(n: int, seed: int = 0) -> Array:
+    """Return (6, n) states: l 0.4 to 0.9 m, psi, heading and command spread over workspace and blends, evenly."""
+    chance = np.random.default_rng(seed)
+    l, psi = chance.uniform(0.4, 0.9, n), chance.uniform(-0.65, 0.65, n)
+    theta_2 = np.arccos((l * l - 0.5) / 0.5)
+    states = np.empty((IN, n))
+    states[0] = psi - 0.5 * theta_2
+    states[1] = theta_2
+    states[2] = chance.uniform(-np.pi, np.pi, n)
+    states[3] = states[2] + psi + chance.uniform(-0.5, 0.5, n)
+    states[4:] = chance.uniform(-0.4, 0.4, (2, n))
+    return states
+
+
+def resident_mb() -> float:
+    """Return the most memory [MB] that this process has had resident."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+
+
+def per_second(step: Callable[[Array, Array], None], states: Array, rounds: int) -> list[float]:
+    """Return the robots stepped per second in each round."""
+    n = states.shape[1]
+    rates = np.empty((OUT, n))
+    repeats = max(1, FEW_ROBOTS // n)
+    step(states, rates)
+    found = []
+    for _ in range(rounds):
+        start = nanoseconds()
+        for _ in range(repeats):
+            step(states, rates)
+        found.append(n * repeats / (nanoseconds() - start) * 1e9)
+    return found
+
+
+def measure(rounds: int = 15, tell: Callable[[str], object] = lambda what: None) -> dict[str, Any]:
+    """Return throughput [steps/s] by size, by threads and of numpy, and how memory grew while it was measured."""
+    robot, soft = PlanarRobot(), smoothstep()
+    limits, _ = constants(robot.workspace, soft, robot.mount)
+    tell("compiling the batch")
+    batch = compile_batch(robot, soft)
+    batch_tanh = compile_batch(robot, tanh())
+
+    def by_numpy(states: Array, rates: Array) -> None:
+        numpy_step(states, rates, limits, *robot.arm.links)
+
+    threads = numba.get_num_threads()
+    states = random_states(HEADLINE)
+    tell("batch of a million robots")
+    # In turns, as everywhere: ours, numpy, one thread, ours with tanh.
+    ours, numpys, alone, steep = [], [], [], []
+    batch(states, np.empty((OUT, HEADLINE)))
+    before = resident_mb()
+    for _ in range(rounds):
+        ours += per_second(batch, states, 1)
+        steep += per_second(batch_tanh, states, 1)
+        numba.set_num_threads(1)
+        alone += per_second(batch, states, 1)
+        numba.set_num_threads(threads)
+    ours_grew = resident_mb() - before
+    for _ in range(max(2, rounds // 5)):
+        numpys += per_second(by_numpy, states, 1)
+    tell("batches of other sizes")
+    sizes = {}
+    for n in SIZES:
+        some = states[:, :n].copy()
+        sizes[str(n)] = {
+            "compiled": statistics.median(per_second(batch, some, rounds)),
+            "numpy": statistics.median(per_second(by_numpy, some, max(2, rounds // 5))),
+        }
+    many = spread(ours)
+    return {
+        "robots": HEADLINE,
+        "steps_per_s": many.median,
+        "spread": [many.low, many.high],
+        "numpy_steps_per_s": statistics.median(numpys),
+        "times_numpy": many.median / statistics.median(numpys),
+        "tanh_steps_per_s": statistics.median(steep),
+        "by_size": sizes,
+        "by_threads": {"1": statistics.median(alone), str(threads): many.median},
+        "threads": threads,
+        "cores": os.cpu_count(),
+        "memory_mb": {"grown_over_all_rounds": ours_grew, "arrays": (IN + OUT) * HEADLINE * 8 / 1e6},
+    }

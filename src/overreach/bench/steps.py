@@ -1,0 +1,133 @@
+"""What is timed for one robot: the law and the whole step, plain and compiled, beside the quadratic programs."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+from overreach.arm.planar import forward, polar_rates, polar_to_joint_rates
+from overreach.arm.step import planar_step
+from overreach.baselines.holistic import holistic
+from overreach.baselines.qp import PaperQP, qp
+from overreach.baselines.separate import separate
+from overreach.baselines.solver import DIRECT, SOLVERS, SPARSE
+from overreach.baselines.weighted import weighted
+from overreach.bench.measure import Candidate
+from overreach.control import HandController
+from overreach.experiments.run import Row, simulate
+from overreach.law.authority import exact, paper
+from overreach.law.blend import rise_tanh, smoothstep, tanh
+from overreach.law.frame import hand
+from overreach.law.laws import exact as exact_law
+from overreach.model.planar import PlanarRobot
+from overreach.types import RobotState
+
+LIMITS = (0.45, 0.85, -0.6, 0.6)
+CENTRED = (0.0, 0.0, 0.0)
+SLOW_EVERY = 5
+"""Solvers that take half a millisecond run in every fifth round."""
+
+PLAIN, COMPILED = "step exact, plain", "step exact, compiled"
+DEFAULT_QP = "step qp, quadprog"
+"""The default way to a quadratic program from Python: qpsolvers with quadprog."""
+
+
+def stream(samples: int = 1_000) -> list[Row]:
+    """Return states and commands evenly from the scenario `mixed`: arm alone, blending and base alone all occur.
+
+    Moments without a command are left out: the closed forms would be done with them at once.
+    """
+    rows = [row for row in simulate("mixed", exact_law(blend=smoothstep())).rows if row.v_c or row.w_c]
+    return rows[:: max(1, len(rows) // samples)][:samples]
+
+
+def _polar(row: Row) -> tuple[float, float, float, float]:
+    """Return (l, psi, u_r, u_t) of a row, the command meant in the frame `hand`."""
+    return row.l, row.psi, *hand(row.v_c, row.w_c, row.l, row.psi, row.theta_b, row.theta_e)
+
+
+def laws(rows: list[Row], fast: bool) -> list[Candidate]:
+    """Return the sharing laws alone: (l, psi, u_r, u_t) -> shares, plain and (with numba) compiled."""
+    soft, steep = smoothstep(), tanh()
+    polar = [_polar(row) for row in rows]
+    plain = []
+    for name, share, blend in (("exact", exact, soft), ("paper", paper, steep)):
+        more = (blend.rise, (*LIMITS, blend.k_l, blend.k_psi), CENTRED)
+        plain.append(Candidate(f"law {name}, plain", share, [(*one, *more) for one in polar]))
+    others: list[Any] = [separate(), weighted(), holistic()]
+    plain += [Candidate(f"law {law.name}, plain", law.split, polar) for law in others]
+    if fast:
+        from overreach.fast.robot import compile_law
+
+        plain.append(Candidate("law exact, compiled", compile_law(), polar))
+    return plain
+
+
+def steps(rows: list[Row], fast: bool) -> list[Candidate]:
+    """Return whole steps, from joint angles and command to base twist and joint rates."""
+    soft, steep = smoothstep(), tanh()
+    hand_states = [(row.theta_1, row.theta_2, row.theta_b, row.theta_e, row.v_c, row.w_c) for row in rows]
+    more = (soft.rise, (*LIMITS, soft.k_l, soft.k_psi), CENTRED, 0.5, 0.5)
+    found = [Candidate(PLAIN, planar_step, [(*state, *more) for state in hand_states])]
+    if fast:
+        from overreach.fast.robot import compile_step
+
+        found.append(Candidate(COMPILED, compile_step(), hand_states))
+    robot = PlanarRobot()
+    controller = HandController(robot, exact_law())
+    measured = [(_measured(row), row.v_c, row.w_c, 0.005) for row in rows]
+    found.append(Candidate("step exact, as `drive` does it", controller.step, measured))
+    limits = (*LIMITS, steep.k_l, steep.k_psi)
+    polar_states = [(row.theta_1, row.theta_2, row.v_c, row.w_c) for row in rows]
+    found.append(Candidate("step paper, plain", partial(paper_step, limits=limits), polar_states))
+    found += [
+        Candidate(f"step qp, {name}", qp(solver=name).step, polar_states, SLOW_EVERY if name in SPARSE else 1)
+        for name in SOLVERS
+    ]
+    return found
+
+
+def _measured(row: Row) -> RobotState:
+    """Return what the robot would report."""
+    joints = (row.theta_1, row.theta_2)
+    return RobotState(row.t, row.x_b, row.y_b, row.theta_b, row.v_b, row.w_b, joints, (0.0, 0.0))
+
+
+def paper_step(
+    theta_1: float, theta_2: float, v_c: float, w_c: float, limits: tuple[float, float, float, float, float, float]
+) -> tuple[float, float, float, float]:
+    """Return (v_b, w_b, dtheta_1, dtheta_2) by the paper's law (tanh), from joints and polar command."""
+    l, psi = forward(theta_1, theta_2, 0.5, 0.5)
+    _, _, v_b, w_b, v_m, w_m, _ = paper(l, psi, v_c, l * w_c, rise_tanh, limits, CENTRED)
+    return v_b, w_b, *polar_to_joint_rates(theta_2, v_m, w_m, 0.5, 0.5, 1)[:2]
+
+
+def parts_of_qp(rows: list[Row], name: str = DIRECT) -> list[Candidate]:
+    """Return the parts of a whole step of `qp` with daqp: the model (kinematics, P, q), and the call of the solver."""
+    law: PaperQP = qp(solver=name)
+    problems, models = [], []
+    for row in rows:
+        j_l, j_psi = polar_rates(row.theta_2, 0.0, 1.0, 0.5, 0.5)
+        problems.append(law.problem(row.psi, j_l, j_psi, row.v_c, row.w_c))
+        models.append((row.theta_1, row.theta_2, row.v_c, row.w_c))
+    return [
+        Candidate("model of the QP: kinematics, P and q", law.model, models),
+        Candidate("call of the solver (daqp-direct)", law.solve, problems),
+    ]
+
+
+def core_of_daqp(rows: list[Row]) -> float:
+    """Return the mean time [us] that daqp itself reports for setting up and solving: its C core, no Python at all."""
+    import daqp
+    import numpy as np
+
+    law = qp(solver=DIRECT)
+    nothing, sense = np.zeros((0, 4)), np.zeros(4, dtype=np.intc)
+    took = []
+    for row in rows:
+        j_l, j_psi = polar_rates(row.theta_2, 0.0, 1.0, 0.5, 0.5)
+        P, q = law.problem(row.psi, j_l, j_psi, row.v_c, row.w_c)
+        *_, told = daqp.solve(P, q, nothing, law.q_max, -law.q_max, sense)
+        took.append(told["setup_time"] + told["solve_time"])
+    return math.fsum(took) / len(took) * 1e6

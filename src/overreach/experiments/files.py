@@ -1,0 +1,61 @@
+"""Files that are written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from overreach.errors import SetupError
+from overreach.experiments.run import Row
+
+
+def check_writable(path: Path, option: str) -> None:
+    """Raise SetupError where `path`, given with `option`, cannot become a file, before any work is done."""
+    folder = path.parent
+    if path.is_dir():
+        raise SetupError(
+            f"{option} {str(path)!r} is a folder: name a file, such as {str(path / ('run' + _suffix(option)))!r}"
+        )
+    if not folder.is_dir():
+        raise SetupError(f"{option} {str(path)!r}: there is no folder {str(folder)!r}: make it first")
+    if not os.access(folder, os.W_OK):
+        raise SetupError(f"{option} {str(path)!r}: the folder {str(folder)!r} is not writable")
+
+
+def _suffix(option: str) -> str:
+    return ".json" if option == "--json" else ".csv"
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write `text` as UTF-8 with bare newlines, under another name first."""
+    handle, part = tempfile.mkstemp(prefix=path.name, suffix=".part", dir=path.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
+            stream.write(text)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(part, 0o666 & ~umask)
+        os.replace(part, path)
+    except BaseException:
+        os.unlink(part)
+        raise
+
+
+def write_csv(path: Path, rows: Sequence[Row]) -> None:
+    """Write `rows` under a header of the field names; numbers round-trip exactly."""
+    write_text(path, "".join([",".join(Row._fields) + "\n", *(",".join(map(repr, row)) + "\n" for row in rows)]))
+
+
+def write_table(path: Path, header: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+    """Write any table of numbers and names under `header`; numbers round-trip exactly."""
+    lines = [",".join(value if isinstance(value, str) else repr(value) for value in row) + "\n" for row in rows]
+    write_text(path, ",".join(header) + "\n" + "".join(lines))
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write `value` as JSON, indented."""
+    write_text(path, json.dumps(value, indent=2) + "\n")
