@@ -1,13 +1,17 @@
 # make drive: drive the simulated robot. make test: everything that must hold. make venv: the environment alone.
+# make reproduce: the paper's figures and the comparison, as report/report.html. make bench: what things cost.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: drive test venv lint types bench browser clean
+.PHONY: drive reproduce test venv lint types bench browser headline clean
 
 drive: venv
 	@$(BIN)/overreach drive || [ $$? -eq 130 ]  # Ctrl-C is how it ends
+
+reproduce: $(VENV)/.ready-all
+	$(BIN)/overreach reproduce --out report
 
 venv: $(VENV)/.ready
 
@@ -22,7 +26,11 @@ types: $(VENV)/.ready-dev
 	$(BIN)/mypy
 
 bench: $(VENV)/.ready-dev browser
+	$(BIN)/overreach bench
 	$(BIN)/python -m benchmarks
+
+headline: reproduce
+	$(BIN)/python docs/headline.py report
 
 browser: $(VENV)/.ready-dev
 	$(BIN)/python tests/browser/install.py
@@ -33,9 +41,13 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 	$(PIP) install -c constraints.txt -e .
 	@touch $@
 
-$(VENV)/.ready-dev: $(VENV)/.ready
+$(VENV)/.ready-all: $(VENV)/.ready
+	$(PIP) install -c constraints.txt -e '.[all]'
+	@touch $@
+
+$(VENV)/.ready-dev: $(VENV)/.ready-all
 	$(PIP) install -c constraints.txt -e '.[dev]'
 	@touch $@
 
 clean:
-	rm -rf $(VENV) dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) dist build report .pytest_cache .mypy_cache .ruff_cache .hypothesis

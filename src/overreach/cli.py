@@ -16,6 +16,7 @@ overreach {__version__}: drive a whole mobile manipulator by its hand.
   overreach drive                a simulated robot and a page to drive it with
   overreach simulate outward     run a scenario without a page (--out run.csv for the data)
 
+  overreach reproduce --out DIR  the paper's figures, and what it does not show: one page, in a minute
   overreach bench                what a control step costs, beside the quadratic programs
 
   overreach laws                 the laws, blends and command frames there are

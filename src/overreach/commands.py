@@ -83,7 +83,8 @@ def simulate(
     """Run a scenario without a page, as fast as it goes, and say what happened.
 
     Args:
-        scenario: A built-in scenario (outward, inward, left, right, mixed, aside) or a TOML file.
+        scenario: A built-in scenario (outward, inward, left, right, mixed, aside, aside_back, reach, held, dither,
+            dither_pushed) or a TOML file.
         law: Name of the law (see `overreach laws`).
         out: CSV file to write, one row a step.
         json: Print the summary as JSON.
@@ -103,6 +104,19 @@ def simulate(
         print(msgspec.json.encode(run.summary).decode())
     else:
         print(table(run.summary))
+
+
+@app.command
+def reproduce(out: Path) -> None:
+    """Reproduce the paper's figures, show what it does not, compare with what one would use instead: one page.
+
+    Args:
+        out: Folder to write to: report.html, headline.md, results.json, figures/ and data/.
+    """
+    from overreach.experiments.reproduce.run import reproduce as write_report
+
+    write_report(out)
+    print(f"report: {out / 'report.html'}")
 
 
 @app.command

@@ -9,6 +9,7 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 
 from overreach import __version__
+from overreach.extras import pip_line
 
 NEEDED = {
     "nicegui": "the page",
@@ -16,6 +17,12 @@ NEEDED = {
     "msgspec": "messages",
     "tyro": "this command line",
 }
+OPTIONAL = {
+    "figures": ("matplotlib", "reproduce"),
+    "qp": ("qpsolvers", "the laws qp and holistic, reproduce, bench"),
+    "fast": ("numba", "compiled steps, bench"),
+}
+"""Extras: the package that tells whether it is there, and what it is for."""
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "firefox", "xdg-open", "open")
 
 
@@ -29,6 +36,13 @@ def _package(name: str, job: str) -> str:
         return _line(True, name, f"{version(name)}  ({job})")
     except PackageNotFoundError:
         return _line(False, name, f"({job})", f"pip install {name}")
+
+
+def _extra(extra: str, package: str, job: str) -> str:
+    try:
+        return _line(True, package, f"{version(package)}  ({job})")
+    except PackageNotFoundError:
+        return f"  not in   {package:<22}({job})  ->  {pip_line(extra)}"
 
 
 def _real_time() -> str:
@@ -54,6 +68,7 @@ def report() -> str:
         f"overreach {__version__} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         _line(python_fits, "python", platform.python_version(), "install Python 3.11 or newer"),
         *(_package(name, job) for name, job in NEEDED.items()),
+        *(_extra(extra, *what) for extra, what in OPTIONAL.items()),
         _line(browser is not None, "browser", browser or "none found", "open the printed address elsewhere"),
         _real_time(),
     ]

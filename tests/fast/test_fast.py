@@ -13,7 +13,7 @@ from overreach.bench.batch import random_states
 from overreach.bench.vectorised import numpy_step
 from overreach.errors import SetupError
 from overreach.fast import mathematics
-from overreach.fast.batch import compile_batch
+from overreach.fast.batch import FEW, Batch, compile_batch
 from overreach.fast.robot import compile_law, compile_step, constants
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep, tanh
@@ -37,6 +37,12 @@ def states(n: int, seed: int, yaw: float = 0.0) -> np.ndarray[Any, np.dtype[np.f
     wild[4:] = chance.uniform(-3.0, 3.0, (2, n))
     bearing = wild[0] + 0.5 * wild[1] + yaw
     return np.hstack([random_states(n // 2, seed), wild[:, np.abs(np.cos(bearing)) > 0.01][:, : n // 2]])
+
+
+@pytest.fixture(scope="module")
+def batch() -> Batch:
+    """The batch step of the default robot: compiled once, which takes two seconds."""
+    return compile_batch()
 
 
 @pytest.mark.parametrize("mount", [Mount(), OFF], ids=["centred", "off"])
@@ -72,26 +78,24 @@ def test_compiled_law_is_the_law(mount: Mount) -> None:
         assert all(abs(a - b) <= SAME * size for a, b in zip(law(*case), want, strict=True)), case
 
 
-def test_batch_of_any_size_is_the_same() -> None:
+def test_batch_of_any_size_is_the_same(batch: Batch) -> None:
     """One thread or many, a few robots or many: the same numbers, bit for bit."""
     given = random_states(5_000)
-    alone, together = np.empty((4, 5_000)), np.empty((4, 5_000))
-    compile_batch(few=10**9)(given, alone)
-    compile_batch(few=0)(given, together)
-    assert np.array_equal(alone, together)
-    for n in (0, 1, 7):
+    together = np.empty((4, 5_000))
+    batch(given, together)
+    for n in (0, 1, 7, FEW - 1, FEW):
         some = np.empty((4, n))
-        compile_batch()(given[:, :n].copy(), some)
-        assert np.array_equal(some, alone[:, :n])
+        batch(given[:, :n].copy(), some)
+        assert np.array_equal(some, together[:, :n])
 
 
-def test_numpy_rival_computes_the_same() -> None:
+def test_numpy_rival_computes_the_same(batch: Batch) -> None:
     """What the batch is compared with does the same work: equal to 1e-12, singular arms included."""
     robot, blend = PlanarRobot(), smoothstep()
     limits, _ = constants(robot.workspace, blend, robot.mount)
     given = states(20_000, 11)
     want, got = np.empty((4, 20_000)), np.empty((4, 20_000))
-    compile_batch(robot, blend)(given, want)
+    batch(given, want)
     numpy_step(given, got, limits, *robot.arm.links)
     assert np.max(np.abs(got - want) / (1.0 + np.abs(want).max(axis=0))) <= SAME
 
@@ -106,10 +110,10 @@ def test_numpy_rival_computes_the_same() -> None:
         ([[0.0]], np.zeros((4, 1))),
     ],
 )
-def test_batch_refuses_what_it_cannot_use(given: Any, rates: Any) -> None:
+def test_batch_refuses_what_it_cannot_use(batch: Batch, given: Any, rates: Any) -> None:
     """Arrays of another shape, type or order are refused in one line that says what is wanted."""
     with pytest.raises(SetupError) as caught:
-        compile_batch()(given, rates)
+        batch(given, rates)
     assert "\n" not in str(caught.value)
 
 

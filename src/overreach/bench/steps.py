@@ -55,7 +55,7 @@ def laws(rows: list[Row], fast: bool) -> list[Candidate]:
     for name, share, blend in (("exact", exact, soft), ("paper", paper, steep)):
         more = (blend.rise, (*LIMITS, blend.k_l, blend.k_psi), CENTRED)
         plain.append(Candidate(f"law {name}, plain", share, [(*one, *more) for one in polar]))
-    others: list[Any] = [separate(), weighted(), holistic()]
+    others: list[Any] = [separate(), weighted(), qp(solver=DIRECT), holistic(solver=DIRECT)]
     plain += [Candidate(f"law {law.name}, plain", law.split, polar) for law in others]
     if fast:
         from overreach.fast.robot import compile_law

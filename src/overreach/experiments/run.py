@@ -7,7 +7,7 @@ from math import cos
 from typing import NamedTuple
 
 from overreach.arm.planar import forward, hand_in_world, polar_rates, wrap
-from overreach.control import HandController
+from overreach.control import HandController, Step
 from overreach.experiments.scenario import Scenario, load_scenario
 from overreach.experiments.summary import Summary, summarise
 from overreach.gate.limits import limit_speed, slew
@@ -47,13 +47,15 @@ class Run(NamedTuple):
     """A finished run.
 
     rows: one a step; errors: per step, the EE's true rigid-body velocity less the commanded one,
-    (radial, tangential) [m/s]; summary: what happened.
+    (radial, tangential) [m/s]; asked: per step, the base twist (v_b, w_b) that was asked for, which a slow motor
+    does not give at once; summary: what happened.
     """
 
     scenario: Scenario
     law: str
     rows: list[Row]
     errors: list[tuple[float, float]]
+    asked: list[tuple[float, float]]
     summary: Summary
 
 
@@ -63,8 +65,8 @@ def law_of(scenario: Scenario, name: str) -> Law:
     return load_law(name, model.workspace, scenario.blend, model.mount, model)
 
 
-def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, float], Verdict]]:
-    """Yield (row, EE velocity error (radial, tangential) [m/s], verdict) step by step, in constant memory."""
+def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, float], Step]]:
+    """Yield (row, EE velocity error (radial, tangential) [m/s], what was decided) step by step, in constant memory."""
     model = scenario.model
     controller = HandController(
         model,
@@ -110,7 +112,7 @@ def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, floa
                 true.x_b, true.y_b, true.theta_b, x_e, y_e, *true.theta,
             ),
             (e_r - u_r, e_t - u_t),
-            done.verdict,
+            done,
         )  # fmt: skip
 
 
@@ -125,9 +127,11 @@ def simulate(scenario: Scenario | str, law: Law | str = "exact") -> Run:
         law = law_of(scenario, law)
     rows: list[Row] = []
     errors: list[tuple[float, float]] = []
+    asked: list[tuple[float, float]] = []
     verdicts: dict[Verdict, int] = {}
-    for row, error, verdict in steps(scenario, law):
+    for row, error, done in steps(scenario, law):
         rows.append(row)
         errors.append(error)
-        verdicts[verdict] = verdicts.get(verdict, 0) + 1
-    return Run(scenario, law.name, rows, errors, summarise(scenario, law, rows, errors, verdicts))
+        asked.append((done.split.v_b, done.split.w_b))
+        verdicts[done.verdict] = verdicts.get(done.verdict, 0) + 1
+    return Run(scenario, law.name, rows, errors, asked, summarise(scenario, law, rows, errors, verdicts))

@@ -5,6 +5,7 @@
 [workspace]  l_min, l_max, psi_min, psi_max
 [law]        blend = "tanh"|"smoothstep"|"step", alpha, beta (tanh), q_l, q_psi (smoothstep)
 [command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
+[dither]     l, psi, f: a tremor added to the command, as swings of the hand [m, rad] at f [Hz]
 [limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, so that the law is seen
 """
 
@@ -79,6 +80,20 @@ class CommandTable(Record, frozen=True):
     file: str | None = None
 
 
+class Dither(Record, frozen=True):
+    """The table [dither]: a tremor that makes l and psi swing by +-l [m] and +-psi [rad], f [Hz] times a second."""
+
+    l: float = 0.0
+    psi: float = 0.0
+    f: float = 1.0
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Return what it adds to (v_c, w_c) at `t` [s]: 2 pi f a cos(2 pi f t)."""
+        rate = 2.0 * math.pi * self.f
+        swing = rate * math.cos(rate * t)
+        return self.l * swing, self.psi * swing
+
+
 class Tables(Record, frozen=True):
     """A scenario file, table by table."""
 
@@ -87,6 +102,7 @@ class Tables(Record, frozen=True):
     robot: RobotTable = RobotTable()
     workspace: WorkspaceTable = WorkspaceTable()
     law: LawTable = LawTable()
+    dither: Dither = Dither()
     limits: Limits | None = None
 
 
@@ -104,6 +120,7 @@ class Scenario(Record, frozen=True):
     duration: float
     dt: float
     segments: tuple[Segment, ...]
+    dither: Dither
     limits: Limits | None
 
     @property
@@ -112,9 +129,13 @@ class Scenario(Record, frozen=True):
         return max(1, round(self.duration / self.dt))
 
     def command_at(self, t: float) -> Command:
-        """Return the command that holds at `t` [s]; zero before the first segment."""
+        """Return the command that holds at `t` [s], zero before the first segment, and the tremor on top of it."""
         k = bisect.bisect_right(self.segments, t + 1e-9 * self.dt, key=lambda segment: segment.t) - 1
-        return Command(self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else Command()
+        held = Command(self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else Command()
+        if self.dither.l == 0.0 and self.dither.psi == 0.0:
+            return held
+        v, w = self.dither.at(t)
+        return Command(held.v_c + v, held.w_c + w)
 
 
 def builtin_scenarios() -> dict[str, str]:
@@ -169,6 +190,7 @@ _TABLES: dict[str, type[msgspec.Struct]] = {
     "workspace": WorkspaceTable,
     "law": LawTable,
     "command": CommandTable,
+    "dither": Dither,
     "limits": Limits,
     "command.segments": Segment,
 }
@@ -264,5 +286,6 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
         duration=command.duration,
         dt=command.dt,
         segments=segments,
+        dither=tables.dither,
         limits=tables.limits,
     )

@@ -1,0 +1,103 @@
+"""Section 7: chattering at the limit: the hard switch against blends, with noise and slow motors."""
+
+from __future__ import annotations
+
+from overreach.experiments.metrics import total_variation
+from overreach.experiments.reproduce.lab import Lab, Section, Table
+from overreach.experiments.reproduce.look import BASE, HAND, panels
+from overreach.experiments.run import Run
+from overreach.law.blend import smoothstep, tanh
+from overreach.law.laws import Law, exact, paper, switch
+
+LAWS: tuple[tuple[str, str, Law], ...] = (
+    ("switch", "switch", switch()),
+    ("paper", "paper (tanh)", paper(blend=tanh())),
+    ("exact_tanh", "exact (tanh)", exact(blend=tanh())),
+    ("exact_smoothstep", "exact (smoothstep)", exact(blend=smoothstep())),
+)
+SHOWN_S = (4.0, 7.0)
+SCENARIOS = {"dither": "trembling at the corner", "dither_pushed": "trembling while pushing outward"}
+
+
+def section(lab: Lab) -> Section:
+    """Run the two tremors with every law; count flips, sum up how the base's speed is changed."""
+    runs = {
+        (scenario, key): lab.run(scenario, law, f"{scenario}_{key}") for scenario in SCENARIOS for key, _, law in LAWS
+    }
+    found = {scenario: {key: _numbers(runs[scenario, key]) for key, _, _ in LAWS} for scenario in SCENARIOS}
+    lab.physics["chatter"] = found
+    shown = (
+        ("dither", "switch"),
+        ("dither", "exact_smoothstep"),
+        ("dither_pushed", "switch"),
+        ("dither_pushed", "exact_smoothstep"),
+    )
+    figure, axes = panels(2, 4, height=1.9, sharex=True, width=9.6)
+    for (scenario, key), column in zip(shown, axes.T, strict=True):
+        run = runs[scenario, key]
+        some = [
+            (row, asked) for row, asked in zip(run.rows, run.asked, strict=True) if SHOWN_S[0] <= row.t <= SHOWN_S[1]
+        ]
+        t = [row.t for row, _ in some]
+        column[0].plot(t, [row.mu for row, _ in some], color=HAND, linewidth=0.9)
+        column[0].set(ylim=(-0.08, 1.08))
+        column[0].set_title(
+            f"{key.replace('_', ', ')}\n{'at the corner' if scenario == 'dither' else 'pushing outward'}"
+        )
+        column[1].plot(t, [asked[0] for _, asked in some], color=BASE, linewidth=0.9)
+        most = 0.008 if scenario == "dither" else 0.07
+        column[1].set(ylim=(-0.04 * most, most), xlabel="t [s]")
+    axes[0][0].set_ylabel("μ, base's share [1]")
+    axes[1][0].set_ylabel("$v_b$ asked [m/s]")
+    hard, soft = found["dither"]["switch"], found["dither"]["exact_smoothstep"]
+    pushed = found["dither_pushed"]
+    return Section(
+        "chatter",
+        "Chattering: the hard switch against blends",
+        [
+            "The hand is at the corner of the workspace and trembles by 2 mm and 5 mrad, the joint angles are noisy (1 mrad), the "
+            "motors lag by 50 ms. A flip is a change of authority from arm (share below 1/4) to base (above 3/4) or back. "
+            f"The hard switch flips {hard['flips_per_s']:.1f} times a second, the blends {soft['flips_per_s']:.0f} times. "
+            "The blends' base is not idle, though: it takes its part of every swing, and the base's speed as asked "
+            f"varies by {soft['variation_asked_per_s']:.3f} m/s in a second, against {hard['variation_asked_per_s']:.3f}.",
+            "Pushing slowly outward at the same time, with a tremor that reverses the command at every swing, the switch asks "
+            f"for jumps: {pushed['switch']['flips_per_s']:.0f} flips and {pushed['switch']['variation_asked_per_s']:.2f} m/s "
+            f"in a second, against {pushed['exact_smoothstep']['variation_asked_per_s']:.2f} with "
+            f"<code>exact</code>. The blends' {pushed['exact_smoothstep']['flips_per_s']:.1f} flips a second are the reversals themselves: "
+            "a command that turns back is the arm's again, and it turns back at zero speed.",
+        ],
+        [lab.picture("chatter", figure, "Share and commanded base speed under tremor: hard switch and smoothstep")],
+        [
+            Table(
+                f"{title[0].upper() + title[1:]} (scenario <code>{scenario}</code>), 20 s at 200 Hz.",
+                (
+                    "law",
+                    "flips [1/s]",
+                    "variation of v_b asked [m/s per s]",
+                    "of v_b as it happens [m/s per s]",
+                    "beyond in l [m]",
+                ),
+                [
+                    (
+                        label,
+                        found[scenario][key]["flips_per_s"],
+                        found[scenario][key]["variation_asked_per_s"],
+                        found[scenario][key]["variation_true_per_s"],
+                        found[scenario][key]["outside_l"],
+                    )
+                    for key, label, _ in LAWS
+                ],
+            )
+            for scenario, title in SCENARIOS.items()
+        ],
+    )
+
+
+def _numbers(run: Run) -> dict[str, float]:
+    summary = run.summary
+    return {
+        "flips_per_s": summary.flips_per_s,
+        "variation_asked_per_s": total_variation([v_b for v_b, _ in run.asked]) / summary.duration,
+        "variation_true_per_s": summary.variation_v_b / summary.duration,
+        "outside_l": summary.outside_l,
+    }
