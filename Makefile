@@ -5,6 +5,9 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
+# Tests on real time have the machine to themselves; the others run side by side.
+REAL_TIME := tests/browser tests/faults tests/link tests/test_loop.py
+
 .PHONY: drive reproduce test venv lint types bench browser headline clean
 
 drive: venv
@@ -16,7 +19,8 @@ reproduce: $(VENV)/.ready-all
 venv: $(VENV)/.ready
 
 test: $(VENV)/.ready-dev browser lint types
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile $(REAL_TIME:%=--ignore=%)
+	$(BIN)/python -m pytest -q $(REAL_TIME)
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .

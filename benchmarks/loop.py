@@ -7,12 +7,9 @@ import multiprocessing
 import os
 from collections.abc import Iterator
 
-from playwright.sync_api import sync_playwright
-
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
+from tests.browser.chromium import chromium
 from tests.processes import Observer, half, robot
 
 SECONDS = 20
@@ -50,9 +47,8 @@ def seconds_of(observer: Observer, page: object) -> list[tuple[float, float, flo
 def run() -> Iterator[Promise]:
     """Measure with a page that drives."""
     fifo = "SCHED_FIFO" if hasattr(os, "SCHED_FIFO") and os.geteuid() == 0 else "no SCHED_FIFO"
-    with robot() as (endpoint, _, observer), sync_playwright() as playwright:
+    with robot() as (endpoint, _, observer), chromium() as browser:
         with half("cockpit", "--connect", endpoint, "--no-browser", "--port", str(free_port())) as cockpit:
-            browser = playwright.chromium.launch(executable_path=find(), args=FLAGS)
             page = browser.new_page()
             page.goto(cockpit.url())
             page.wait_for_function("window.overreach?.page.state && overreach.link.ready")
@@ -61,7 +57,6 @@ def run() -> Iterator[Promise]:
             alone = seconds_of(observer, page)
             with hogs(2):
                 beside = seconds_of(observer, page)
-            browser.close()
     for name, told, most in (("page open", alone, 0.5), ("page open, two CPU hogs", beside, 1.0)):
         yield promise(f"loop lateness p50, {name}", [one[0] / 1000 for one in told], "ms", note=fifo)
         yield promise(f"loop lateness p99, {name}", [one[1] / 1000 for one in told], "ms", most, note=fifo)

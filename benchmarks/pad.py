@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from playwright.sync_api import sync_playwright
-
 from benchmarks.measure import Promise, percentile
 from overreach.link.endpoint import free_port
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
+from tests.browser.chromium import chromium
 from tests.processes import half
 
 STEPS = 200
@@ -34,8 +31,7 @@ PROBE = """
 
 def run() -> Iterator[Promise]:
     """Measure STEPS movements in Chromium."""
-    with half("drive", "--no-browser", "--port", str(free_port())) as drive, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find(), args=FLAGS)
+    with half("drive", "--no-browser", "--port", str(free_port())) as drive, chromium() as browser:
         page = browser.new_page(viewport={"width": 1360, "height": 850})
         page.goto(drive.url())
         page.wait_for_function("window.overreach?.page.state && overreach.link.ready")
@@ -53,7 +49,6 @@ def run() -> Iterator[Promise]:
                 break
         took = page.evaluate("window.took")
         page.mouse.up()
-        browser.close()
     name = f"pad to drawn state, {len(took)} steps"
     low, high = percentile(took, 0.25), percentile(took, 0.75)
     yield Promise(f"{name}: median", percentile(took, 0.5), low, high, "ms")

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import psutil
-from playwright.sync_api import sync_playwright
 
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
+from tests.browser.chromium import chromium
 from tests.processes import half
 
 SECONDS = 4
@@ -19,8 +17,7 @@ ROUNDS = 5
 
 def run() -> Iterator[Promise]:
     """Measure while a page drives."""
-    with half("drive", "--no-browser", "--port", str(free_port())) as drive, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find(), args=FLAGS)
+    with half("drive", "--no-browser", "--port", str(free_port())) as drive, chromium() as browser:
         page = browser.new_page(viewport={"width": 1360, "height": 850})
         page.goto(drive.url())
         page.wait_for_function("window.overreach?.page.state && overreach.link.ready")
@@ -36,7 +33,6 @@ def run() -> Iterator[Promise]:
             server.append((after[0] - before[0]) / SECONDS * 100)
             side.append((after[1] - before[1]) / SECONDS * 100)
             memory.append(sum(process.memory_info().rss for process in (cockpit, robot)) / 1e6)
-        browser.close()
     yield promise("server (operator side) while driving", server, "%core", 15.0)
     yield promise("robot side while driving", side, "%core")
     yield promise("memory of both processes", memory, "MB", 250.0)

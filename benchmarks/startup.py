@@ -7,12 +7,9 @@ import sys
 import time
 from collections.abc import Iterator
 
-from playwright.sync_api import sync_playwright
-
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
+from tests.browser.chromium import chromium
 from tests.processes import half
 
 
@@ -25,8 +22,7 @@ def run() -> Iterator[Promise]:
         took.append(time.perf_counter() - start)
     yield promise("overreach --help", took, "s", 0.3)
     printed, usable = [], []
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find(), args=FLAGS)
+    with chromium() as browser:
         for _ in range(5):
             start = time.perf_counter()
             with half("drive", "--no-browser", "--port", str(free_port())) as drive:
@@ -37,6 +33,5 @@ def run() -> Iterator[Promise]:
                 page.wait_for_function("window.overreach?.page.state && overreach.link.ready")
                 usable.append(time.perf_counter() - start)
                 page.close()
-        browser.close()
     yield promise("overreach drive: address printed", printed, "s")
     yield promise("overreach drive: page usable (browser already open)", usable, "s", 3.0)

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
-
 from overreach.link.endpoint import free_port
-from tests.browser.conftest import FLAGS
-from tests.browser.install import find
+from tests.browser.chromium import chromium
 from tests.processes import half
 
 HERE = Path(__file__).parent / "img"
@@ -19,8 +16,7 @@ WAY = ((0, -76, 3.4), (-46, -60, 2.4), (42, -64, 3.2))
 def main() -> None:
     """Drive a little and take the picture."""
     HERE.mkdir(exist_ok=True)
-    with half("drive", "--no-browser", "--port", str(free_port())) as drive, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find(), args=FLAGS)
+    with half("drive", "--no-browser", "--port", str(free_port())) as drive, chromium() as browser:
         page = browser.new_page(viewport={"width": 1360, "height": 800}, color_scheme="light")
         page.goto(drive.url())
         page.wait_for_function("window.overreach?.page.state")
@@ -34,7 +30,6 @@ def main() -> None:
             page.mouse.move(x + dx, y + dy, steps=8)
             page.wait_for_timeout(seconds * 1_000)
         page.screenshot(path=HERE / "cockpit.png")
-        browser.close()
 
 
 if __name__ == "__main__":

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from playwright.sync_api import Browser
 
 from overreach.experiments.reproduce import cost, run
+from tests.browser.chromium import chromium
+from tests.browser.install import find
 
 settings.register_profile("overreach", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("overreach")
@@ -24,3 +29,16 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(cost, "SAMPLES", 30)
         run.reproduce(folder, progress=False)
     return folder
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """One Chromium for all tests; without it they are skipped, and in CI they fail."""
+    path = find()
+    if path is None:
+        message = "no Chromium: run `make browser`"
+        if os.environ.get("CI") == "true":
+            pytest.fail(message)
+        pytest.skip(message)
+    with chromium() as running:
+        yield running
