@@ -92,18 +92,24 @@ def simulate(
     import msgspec
 
     from overreach.experiments.files import check_writable, write_csv
+    from overreach.experiments.metrics import cost_per_step
+    from overreach.experiments.run import law_of
     from overreach.experiments.run import simulate as run_scenario
+    from overreach.experiments.scenario import load_scenario
     from overreach.experiments.summary import table
 
     if out is not None:
         check_writable(out, "--out")
-    run = run_scenario(scenario, law)
+    loaded = load_scenario(scenario)
+    made = law_of(loaded, law)
+    run = run_scenario(loaded, made)
     if out is not None:
         write_csv(out, run.rows)
     if json:
         print(msgspec.json.encode(run.summary).decode())
-    else:
-        print(table(run.summary))
+        return
+    cost = cost_per_step(made, loaded.frame or made.frame, run.rows, made.mount.yaw)
+    print(f"{table(run.summary)}\n  {'law.split, median, here and now':<32}{cost:>12.4g}  us")
 
 
 @app.command

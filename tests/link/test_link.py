@@ -86,6 +86,26 @@ def test_a_robot_side_end_to_end() -> None:
         until(lambda: observer.now.x_e == pytest.approx(start.x_e))
 
 
+def test_a_rival_is_loaded_at_rest_and_then_driven() -> None:
+    """A law that is not in memory is refused in motion, which loading would hold up; at rest it is taken and drives."""
+    with robot() as (_, _, observer):
+        driver = Driver(observer.link)
+        driver.arm()
+        driver.drive(0.5)
+        answer = observer.link.request(Configure(Settings(law="qp")))
+        assert isinstance(answer, Refused)
+        assert "Let go first: 'qp'" in answer.reason
+        until(lambda: observer.speed() == 0.0, what="rest")
+        assert observer.link.request(Configure(Settings(law="qp"))) == Accepted()
+        start = observer.now
+        driver.grip += 1
+        driver.drive(1.0)
+        assert observer.now.x_e - start.x_e > 0.1
+        assert observer.now.x_b > start.x_b  # the QP drives the base inside the workspace
+        assert observer.link.request(Configure(Settings())) == Accepted()
+        assert observer.link.request(Configure(Settings(law="qp"))) == Accepted()  # now it is in memory
+
+
 def test_garbage_is_counted_and_dropped() -> None:
     """Bytes that are no message, of no known form or of the wrong types, move nothing and end nothing."""
     with robot() as (endpoint, running, observer):

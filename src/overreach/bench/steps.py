@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import Any
 
-from overreach.arm.planar import forward, polar_rates, polar_to_joint_rates
-from overreach.arm.step import planar_step
+from overreach.arm.planar import polar_rates
+from overreach.arm.step import planar_step, polar_step
 from overreach.baselines.holistic import holistic
 from overreach.baselines.qp import PaperQP, qp
 from overreach.baselines.separate import separate
@@ -17,7 +16,7 @@ from overreach.bench.measure import Candidate
 from overreach.control import HandController
 from overreach.experiments.run import Row, simulate
 from overreach.law.authority import exact, paper
-from overreach.law.blend import rise_tanh, smoothstep, tanh
+from overreach.law.blend import smoothstep, tanh
 from overreach.law.frame import hand
 from overreach.law.laws import exact as exact_law
 from overreach.model.planar import PlanarRobot
@@ -77,10 +76,10 @@ def steps(rows: list[Row], fast: bool) -> list[Candidate]:
     robot = PlanarRobot()
     controller = HandController(robot, exact_law())
     measured = [(_measured(row), row.v_c, row.w_c, 0.005) for row in rows]
-    found.append(Candidate("step exact, as `drive` does it", controller.step, measured))
-    limits = (*LIMITS, steep.k_l, steep.k_psi)
+    found.append(Candidate("step exact, in the loop: limits, records and all", controller.step, measured))
     polar_states = [(row.theta_1, row.theta_2, row.v_c, row.w_c) for row in rows]
-    found.append(Candidate("step paper, plain", partial(paper_step, limits=limits), polar_states))
+    his = (steep.rise, (*LIMITS, steep.k_l, steep.k_psi), CENTRED, 0.5, 0.5)
+    found.append(Candidate("step paper, plain", polar_step, [(*state, *his) for state in polar_states]))
     found += [
         Candidate(f"step qp, {name}", qp(solver=name).step, polar_states, SLOW_EVERY if name in SPARSE else 1)
         for name in SOLVERS
@@ -92,15 +91,6 @@ def _measured(row: Row) -> RobotState:
     """Return what the robot would report."""
     joints = (row.theta_1, row.theta_2)
     return RobotState(row.t, row.x_b, row.y_b, row.theta_b, row.v_b, row.w_b, joints, (0.0, 0.0))
-
-
-def paper_step(
-    theta_1: float, theta_2: float, v_c: float, w_c: float, limits: tuple[float, float, float, float, float, float]
-) -> tuple[float, float, float, float]:
-    """Return (v_b, w_b, dtheta_1, dtheta_2) by the paper's law (tanh), from joints and polar command."""
-    l, psi = forward(theta_1, theta_2, 0.5, 0.5)
-    _, _, v_b, w_b, v_m, w_m, _ = paper(l, psi, v_c, l * w_c, rise_tanh, limits, CENTRED)
-    return v_b, w_b, *polar_to_joint_rates(theta_2, v_m, w_m, 0.5, 0.5, 1)[:2]
 
 
 def parts_of_qp(rows: list[Row], name: str = DIRECT) -> list[Candidate]:

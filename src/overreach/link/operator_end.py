@@ -19,6 +19,7 @@ from overreach.link.messages import (
     PROTOCOL,
     Accepted,
     Answer,
+    Configure,
     Hello,
     Refused,
     Request,
@@ -32,6 +33,8 @@ from overreach.types import Stick
 
 ANSWER_S = 1.0
 """How long an answer is waited for [s]."""
+LOADING_S = 10.0
+"""How long new settings may take [s]: a law that is used for the first time has its libraries loaded first."""
 AGAIN_S = 0.02
 
 
@@ -77,8 +80,8 @@ class OperatorEnd:
         return None
 
     def request(self, request: Request) -> Accepted | Refused:
-        """Ask the robot side for something and return its answer. Blocks for at most ANSWER_S."""
-        answer = self._ask(KEY_REQUEST, request, ANSWER_S)
+        """Ask the robot side for something and return its answer. Blocks for at most ANSWER_S, settings LOADING_S."""
+        answer = self._ask(KEY_REQUEST, request, LOADING_S if isinstance(request, Configure) else ANSWER_S)
         if isinstance(answer, Accepted | Refused):
             return answer
         return Refused("No answer from the robot side.")

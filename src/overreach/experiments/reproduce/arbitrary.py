@@ -69,7 +69,7 @@ def _draw(run: Run, axes: list, name: str) -> None:  # type: ignore[type-arg]  #
     axes[2].plot(t, true_t, color=HAND, label="hand, true")
     axes[2].plot(t, asked_t, color=INK, linestyle=(0, (3, 3)), linewidth=1.1, label="commanded")
     axes[2].set_title("around the shoulder (tangential / l)")
-    axes[2].set_ylim(-1.7, 1.9)
+    axes[2].set_ylim(-1.8, 2.2)
 
     size = [(e_r * e_r + e_t * e_t) ** 0.5 for _, (e_r, e_t) in pairs]
     axes[3].plot(t, size, color=STOP, label="|true - commanded|")

@@ -38,7 +38,8 @@ def section(lab: Lab) -> Section:
                 )  # fmt: skip
                 words = f"Q = {width:.3f} {unit}"
                 if sharp == 10.0:  # the widest: its label stands on its bar
-                    axis.text(end + width / 2, level + 0.03, words, color=colour, fontsize=8, ha="right")
+                    at, side = (end + width / 2, "right") if outward else (end - width / 2, "left")
+                    axis.text(at, level + 0.03, words, color=colour, fontsize=8, ha=side)
                 else:  # on the side where no curve is at this height
                     left = outward and level > 0.5
                     place = end - width / 2 - 0.01 if left else end + width / 2 + 0.01
