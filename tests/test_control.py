@@ -14,7 +14,7 @@ from overreach.law.blend import step
 from overreach.law.laws import exact, paper
 from overreach.law.workspace import Workspace
 from overreach.model.planar import Arm2R, PlanarRobot
-from overreach.plugs import load_law
+from overreach.plugs import LAWS, load_law, names
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Frame, Verdict
 from tests.strategies import speeds
@@ -23,7 +23,7 @@ DT = 0.005
 
 
 @settings(max_examples=60)
-@given(st.sampled_from(["exact", "paper", "switch"]), st.integers(0, 10**6))
+@given(st.sampled_from(names(LAWS)), st.integers(0, 10**6))
 def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
     """Under any commands and any law, base and joints keep their limits of speed and acceleration, always."""
     law = load_law(name)

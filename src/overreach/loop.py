@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 from math import inf
 from typing import final
@@ -149,9 +150,13 @@ class Loop:
         """Use `settings`; raises SetupError, with nothing changed, where they cannot be used."""
         if settings.frame is not self.controller.frame and not self.gate.resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
-        if not loaded(settings.law) and settings.law in names(LAWS) and not self.gate.resting:
+        new = settings.law in names(LAWS) and not loaded(settings.law)
+        if new and not self.gate.resting:
             raise SetupError(f"Let go first: {settings.law!r} has to be loaded, which holds the loop up for a moment.")
         law, frame = self._law(settings), settings.frame
+        if new:  # what came with it is here to stay: the collector is not to look through it in the middle of a drive
+            gc.collect()
+            gc.freeze()
         self.gate.set_speed_scale(settings.speed_scale)
         self.controller.configure(law, frame)
         self.settings = settings
