@@ -9,7 +9,7 @@ from overreach.arm.planar import forward, joint_rates_over, polar_rates, polar_t
 from overreach.gate.limits import clamp_change, feasible_scale
 from overreach.law.authority import arm_residual
 from overreach.law.frame import FRAMES, heading_rate
-from overreach.law.laws import Law
+from overreach.law.laws import JointLaw, Law
 from overreach.model.planar import PlanarRobot
 from overreach.types import BaseTwist, Frame, PolarState, Record, RobotState, Split, Verdict
 
@@ -66,6 +66,7 @@ class HandController:
         if getattr(self, "frame", None) is not chosen:
             self._theta_e = None
         self.law = law
+        self._joint_law = law if isinstance(law, JointLaw) else None
         self.frame: Frame = chosen
         self._to_polar = FRAMES[chosen]
         mount = law.mount
@@ -97,7 +98,10 @@ class HandController:
         polar = self.locate(state)
         l, psi = polar.l, polar.psi
         u_r, u_t = self.commanded(v_c, w_c, l, psi, state.theta_b, polar.theta_e)
-        split = self.law.split(l, psi, u_r, u_t)
+        if self._joint_law is None:
+            split = self.law.split(l, psi, u_r, u_t)
+        else:
+            split = self._joint_law.split_joints(state.theta, u_r, u_t)
         scale = split.scale
         verdict = split.verdict
         if verdict is Verdict.MOVING and scale < 1.0:
@@ -105,7 +109,7 @@ class HandController:
 
         v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
         if self.limited:
-            v_b, w_b, v_m, w_m, part, why = self._limit(state, l, v_b, w_b, v_m, w_m, dt)
+            v_b, w_b, v_m, w_m, part, why = self._limit(state, split, dt)
             scale *= part
             if why is not Verdict.MOVING:
                 verdict = why
@@ -119,7 +123,10 @@ class HandController:
                 v_m, w_m = arm_residual(
                     l, psi, u_r * full * part, u_t * full * part, v_b + slip_v, w_b + slip_w, self._mount
                 )
-        dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, dt)
+        own = split.dtheta
+        if own is not None and split.scale > 0.0:
+            own = tuple(rate * scale / split.scale for rate in own)
+        dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, own, dt)
         if why is not Verdict.MOVING:
             verdict = why
 
@@ -127,15 +134,14 @@ class HandController:
         turn = heading_rate(self.frame, w_c * scale)
         if turn is not None:
             self._theta_e = wrap(polar.theta_e + turn * dt)
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale)
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale, split.verdict, split.dtheta)
         return Step(polar, u_r, u_t, applied, dtheta, scale, verdict)
 
-    def _limit(
-        self, state: RobotState, l: float, v_b: float, w_b: float, v_m: float, w_m: float, dt: float
-    ) -> tuple[float, float, float, float, float, Verdict]:
+    def _limit(self, state: RobotState, split: Split, dt: float) -> tuple[float, float, float, float, float, Verdict]:
         """Return the four rates scaled alike until no limit is passed, the scale, and why."""
         arm, base = self.model.arm, self.model.base
-        dtheta_1, dtheta_2, _ = polar_to_joint_rates(state.theta[1], v_m, w_m, *arm.links, arm.elbow)
+        v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
+        dtheta_1, dtheta_2 = split.dtheta or polar_to_joint_rates(state.theta[1], v_m, w_m, *arm.links, arm.elbow)[:2]
         joints = fastest_joints(arm, state.theta, (dtheta_1, dtheta_2), dt)
         wanted = (v_b, w_b, dtheta_1, dtheta_2)
         change = (base.dv_max * dt, base.dw_max * dt, *(rate * dt for rate in arm.ddtheta_max))
@@ -155,11 +161,17 @@ class HandController:
         )
 
     def _joints(
-        self, state: RobotState, v_m: float, w_m: float, dt: float
+        self, state: RobotState, v_m: float, w_m: float, own: tuple[float, ...] | None, dt: float
     ) -> tuple[tuple[float, ...], float, float, Verdict]:
-        """Return joint rates, the polar rates that they give, and what kept them from what was asked."""
+        """Return joint rates, the polar rates that they give, and what kept them from what was asked.
+
+        own: joint rates that the law has decided itself; else they follow from v_m, w_m.
+        """
         arm = self.model.arm
-        if self._whole_steps:
+        if own is not None:
+            one, two = own
+            verdict = Verdict.MOVING
+        elif self._whole_steps:
             theta_1, theta_2 = state.theta
             one, two, verdict = joint_rates_over(theta_1, theta_2, v_m, w_m, dt, *arm.links, arm.elbow)
             if verdict is not Verdict.MOVING:

@@ -64,7 +64,7 @@ def load_law(
     Raises UnknownNameError with the valid names, or MissingExtraError where it needs a library that is not installed.
     """
     given = {"workspace": workspace, "blend": blend, "mount": mount, "robot": robot}
-    law: Law = _load(LAWS, "law", name)(**{key: given[key] for key in takes(name) if key in given})
+    law: Law = _load(LAWS, "law", name)(**{key: given[key] for key in takes(name) if given.get(key) is not None})
     return law
 
 

@@ -109,7 +109,8 @@ class Split(Record, frozen=True):
     mu, sigma: the base's share of linear and of angular motion, 0 (arm) to 1 (base);
     v_b [m/s], w_b [rad/s]: base twist; v_m = dl/dt [m/s], w_m = dpsi/dt [rad/s]: the arm's rates;
     scale: the part of the command that is feasible, 0 to 1 (all rates are scaled alike);
-    verdict: MOVING, or why a law has nothing to give (then all rates and the scale are 0).
+    verdict: MOVING, or why a law has nothing to give (then all rates and the scale are 0);
+    dtheta [rad/s]: joint rates, where a law decides them itself; else the arm's closed form takes v_m and w_m.
     """
 
     mu: float
@@ -120,6 +121,7 @@ class Split(Record, frozen=True):
     w_m: float
     scale: float = 1.0
     verdict: Verdict = Verdict.MOVING
+    dtheta: tuple[float, ...] | None = None
 
 
 class RobotState(Record, frozen=True):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import random
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,10 @@ from overreach.arm.planar import inverse, polar_rates
 from overreach.baselines.holistic import DAMPER_START, DAMPER_STOP, damper, holistic
 from overreach.baselines.qp import DAMPING, qp
 from overreach.baselines.solver import SOLVERS, solver
+from overreach.baselines.weighted import weighted
 from overreach.control import HandController
 from overreach.errors import SetupError, UnknownNameError
+from overreach.experiments.run import simulate
 from overreach.law.authority import ee_velocity
 from overreach.law.laws import Law
 from overreach.model.planar import PlanarRobot
@@ -89,6 +92,41 @@ def test_no_solution_reaches_whoever_drives() -> None:
     step = controller.step(robot.read(0.0), 0.4, 0.0, 0.005)
     assert step.verdict is Verdict.NO_SOLUTION
     assert (step.twist.v_b, step.twist.w_b, *step.dtheta) == (0.0,) * 4
+
+
+@given(lengths, bearings, speeds, speeds)
+def test_a_kept_workspace_remembers_nothing(l: float, psi: float, u_r: float, u_t: float) -> None:
+    """With its workspace kept daqp gives for a problem what it gives for it alone, whatever it solved before."""
+    kept = EACH["daqp-model"]
+    alone = qp(solver="daqp-direct").split(l, psi, u_r, u_t)
+    kept.split(0.9, -0.5, 3.0, -2.0)
+    kept.split(0.5, 0.1, -3.0, 2.0)
+    split = kept.split(l, psi, u_r, u_t)
+    assert (split.v_b, split.w_b, split.v_m, split.w_m) == pytest.approx(
+        (alone.v_b, alone.w_b, alone.v_m, alone.w_m), abs=1e-9
+    )
+
+
+@given(lengths, st.floats(-0.7, 0.7), speeds, speeds)
+def test_joints_and_polar_coordinates_ask_the_same(l: float, psi: float, u_r: float, u_t: float) -> None:
+    """A law that is asked with joints answers as for where they put the hand, and its rates are those of its joints."""
+    theta = inverse(l, psi, 0.5, 0.5, 1)
+    for law in (EACH["daqp"], holistic(), weighted()):
+        split = law.split_joints(theta, u_r, u_t)
+        assert split == law.split(l, psi, u_r, u_t)
+        if split.dtheta is not None:
+            one, two = split.dtheta
+            assert polar_rates(theta[1], one, two, 0.5, 0.5) == pytest.approx((split.v_m, split.w_m), abs=1e-9)
+
+
+def test_weighted_goes_through_its_singularity() -> None:
+    """A law that decides joint rates is asked with the joints as they are: the elbow may change its side."""
+    rows = simulate("mixed", weighted(base_weight=10.0)).rows
+    elbow = [row.theta_2 for row in rows]
+    assert min(elbow) < -0.1
+    assert max(elbow) > 0.1
+    still = sum(a == b for a, b in pairwise(elbow) if abs(a) < 0.05)
+    assert still < 0.05 * len(elbow)
 
 
 def test_unknown_solvers_and_dampings_are_refused() -> None:

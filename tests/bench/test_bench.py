@@ -57,8 +57,8 @@ def test_the_report_says_what_was_measured_and_what_was_missed(monkeypatch: pyte
     assert found["batch"]["steps_per_s"] > 0.0
     assert set(found["batch"]["by_size"]) == {"100", "1000"}
     assert found["machine"]["python"] == describe()["python"]
-    parts = found["qp_parts_us"]
-    assert parts["core"] + parts["allocation_and_call"] < parts["whole"] + parts["model"]
+    assert set(found["qp_parts_us"]) == {"model", "core", "allocation_and_call", "whole"}
+    assert all(value > 0.0 for value in found["qp_parts_us"].values())
     text = report.text(found)
     missed = [one for one in found["targets"] if not one["reached"]]
     assert "batch, control steps per second" in {one["name"] for one in missed}

@@ -19,13 +19,14 @@ def part(base: float, whole: float) -> float:
 
 
 def shared(
-    psi: float, mount: Mount, u_r: float, v_b: float, w_b: float, v_m: float, w_m: float, scale: float = 1.0
+    psi: float, mount: Mount, u_r: float, v_b: float, w_b: float, dtheta: tuple[float, float], j_l: float, j_psi: float
 ) -> Split:
-    """Return the rates as a `Split`, with the shares read off them.
+    """Return base and joint rates as a `Split`, with the arm's polar rates and the shares read off them.
 
     mu = (c v_b + k_r w_b)/u_r, the base's part of the radial motion, sigma = w_b/(w_b + w_m), both held to [0, 1].
     """
     psi_d = psi + mount.yaw
     c, sn = cos(psi_d), sin(psi_d)
     radial = c * v_b + (mount.s_x * sn - mount.s_y * c) * w_b
-    return Split(part(radial, u_r), part(w_b, w_b + w_m), v_b, w_b, v_m, w_m, scale)
+    v_m, w_m = j_l * dtheta[1], dtheta[0] + j_psi * dtheta[1]
+    return Split(part(radial, u_r), part(w_b, w_b + w_m), v_b, w_b, v_m, w_m, dtheta=dtheta)

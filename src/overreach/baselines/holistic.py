@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, final
 
-from overreach.arm.planar import inverse, jacobian
+from overreach.arm.planar import forward, inverse, jacobian
 from overreach.baselines.common import NO_SOLUTION, shared
 from overreach.baselines.solver import Array, solver
 from overreach.extras import require
@@ -27,8 +27,8 @@ DAMPER_GAIN = 1.0
 DAMPER_STOP = 0.1
 DAMPER_START = 0.9
 """Velocity damper of the joint limits: eta, rho_s [rad] and rho_i [rad]."""
-LOOK_AHEAD_S = 1.0
-"""The publication weighs by the distance e to a goal; a teleoperated hand has none. Ours: e = |u| times this [s]."""
+LOOK_AHEAD_S = 1.0 / 1.5
+"""e = |u| times this: a stick has no goal to be e away from, but the authors servo to theirs with |u| = 1.5 e."""
 STILL = 1e-9
 """A command below this [m/s] is none: e = 0, where the weights 1/e hold everything still."""
 
@@ -61,7 +61,7 @@ class Holistic:
         self._ends = ((arm.theta_min[0], arm.theta_max[0]), inner)
 
     def problem(
-        self, l: float, psi: float, theta: tuple[float, float], j_l: float, j_psi: float, u_r: float, u_t: float
+        self, l: float, psi: float, theta: tuple[float, ...], j_l: float, j_psi: float, u_r: float, u_t: float
     ) -> tuple[Array, ...]:
         """Return (Q, C, lb, ub, A, b); the dampers stand in the bounds of the joint rates."""
         numpy, mount = self._numpy, self.mount
@@ -87,13 +87,17 @@ class Holistic:
         return Q, C, lb, ub, A, numpy.array((u_r, u_t))
 
     def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
+        """Return `split_joints` for the joints that put the hand at (l [m], psi [rad])."""
+        return self.split_joints(inverse(l, psi, *self._arm.links, self._arm.elbow), u_r, u_t)
+
+    def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
         """Return the solution as a split; zero and NO_SOLUTION where there is none."""
         if abs(u_r) < STILL and abs(u_t) < STILL:
             return Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if not math.isfinite(u_r + u_t):
             return NO_SOLUTION
         a, b = self._arm.links
-        theta = inverse(l, psi, a, b, self._arm.elbow)
+        l, psi = forward(theta[0], theta[1], a, b)
         j_l, j_psi = jacobian(theta[1], a, b)
         Q, C, lb, ub, A, rhs = self.problem(l, psi, theta, j_l, j_psi, u_r, u_t)
         found = self._solve(Q, C, lb, ub, A=A, b=rhs)
@@ -102,7 +106,7 @@ class Holistic:
         v_b, w_b, dtheta_1, dtheta_2, _, _ = found.tolist()
         if not math.isfinite(v_b + w_b + dtheta_1 + dtheta_2):
             return NO_SOLUTION
-        return shared(psi, self.mount, u_r, v_b, w_b, j_l * dtheta_2, dtheta_1 + j_psi * dtheta_2)
+        return shared(psi, self.mount, u_r, v_b, w_b, (dtheta_1, dtheta_2), j_l, j_psi)
 
 
 def damper(room: float) -> float:

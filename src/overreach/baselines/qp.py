@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, final
 
-from overreach.arm.planar import inverse, jacobian
+from overreach.arm.planar import L_LEAST, forward, inverse, jacobian
 from overreach.baselines.common import NO_SOLUTION, shared
 from overreach.baselines.solver import Array, solver
 from overreach.errors import SetupError
@@ -52,20 +52,26 @@ class PaperQP:
         base = robot.base
         self.q_max: Array = numpy.array((base.v_max, base.w_max, *robot.arm.dtheta_max))
         self._least = -self.q_max
-        self._damping: Array = damping * numpy.eye(4)
-        self._J: Array = numpy.zeros((2, 4))
-        self._J[1, :3] = 0.0, 1.0, 1.0
-        self._v_ref: Array = numpy.zeros(2)
+        self._damping = damping
+        self._P: Array = numpy.eye(4) * (1.0 + damping)
+        self._P[1, 2] = self._P[2, 1] = 1.0
+        self._q: Array = numpy.zeros(4)
 
     def problem(self, psi: float, j_l: float, j_psi: float, v_c: float, w_c: float) -> tuple[Array, Array]:
-        """Return (P, q) of min 1/2 x^T P x + q^T x: P = J^T J + lambda I, q = -J^T v_ref."""
-        J, v_ref = self._J, self._v_ref
-        J[0, 0] = math.cos(psi + self.mount.yaw)
-        J[0, 3] = j_l
-        J[1, 3] = j_psi
-        v_ref[0] = -v_c
-        v_ref[1] = -w_c
-        return J.T @ J + self._damping, v_ref @ J
+        """Return (P, q) of min 1/2 x^T P x + q^T x: P = J^T J + lambda I, q = -J^T v_ref, written out.
+
+        The two arrays are this law's own, written anew at every call: copy what is to be kept.
+        """
+        P, q = self._P, self._q
+        c = math.cos(psi + self.mount.yaw)
+        P[0, 0] = c * c + self._damping
+        P[0, 3] = P[3, 0] = c * j_l
+        P[1, 3] = P[2, 3] = P[3, 1] = P[3, 2] = j_psi
+        P[3, 3] = j_l * j_l + j_psi * j_psi + self._damping
+        q[0] = -c * v_c
+        q[1] = q[2] = -w_c
+        q[3] = -j_l * v_c - j_psi * w_c
+        return P, q
 
     def solve(self, P: Array, q: Array) -> Array | None:
         """Return the rates for a problem, or None: the solver's core alone."""
@@ -85,18 +91,23 @@ class PaperQP:
         return self.solve(*self.model(theta_1, theta_2, v_c, w_c))
 
     def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
+        """Return `split_joints` for the joints that put the hand at (l [m], psi [rad])."""
+        return self.split_joints(inverse(l, psi, *self._arm.links, self._arm.elbow), u_r, u_t)
+
+    def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
         """Return the solution as a split, with v_c = u_r and w_c = u_t/l; zero and NO_SOLUTION where there is none."""
         if not math.isfinite(u_r + u_t):
             return NO_SOLUTION
         a, b = self._arm.links
-        j_l, j_psi = jacobian(inverse(l, psi, a, b, self._arm.elbow)[1], a, b)
-        found = self.solve(*self.problem(psi, j_l, j_psi, u_r, u_t / l))
+        l, psi = forward(theta[0], theta[1], a, b)
+        j_l, j_psi = jacobian(theta[1], a, b)
+        found = self.solve(*self.problem(psi, j_l, j_psi, u_r, u_t / max(l, L_LEAST)))
         if found is None:
             return NO_SOLUTION
         v_b, w_b, dtheta_1, dtheta_2 = found.tolist()
         if not math.isfinite(v_b + w_b + dtheta_1 + dtheta_2):
             return NO_SOLUTION
-        return shared(psi, self.mount, u_r, v_b, w_b, j_l * dtheta_2, dtheta_1 + j_psi * dtheta_2)
+        return shared(psi, self.mount, u_r, v_b, w_b, (dtheta_1, dtheta_2), j_l, j_psi)
 
 
 def qp(

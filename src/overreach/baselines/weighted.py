@@ -6,7 +6,7 @@ import math
 from math import cos, sin
 from typing import final
 
-from overreach.arm.planar import inverse, jacobian
+from overreach.arm.planar import forward, inverse, jacobian
 from overreach.baselines.common import NO_SOLUTION, shared
 from overreach.errors import SetupError
 from overreach.law.blend import step
@@ -14,8 +14,8 @@ from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.types import Frame, Split
 
-BASE_WEIGHT = 10.0
-"""How much dearer a rate of the base [m/s, rad/s] is than one of a joint [rad/s]. Ours: there is no standard value."""
+BASE_WEIGHT = 1.0
+"""How much dearer a rate of the base [m/s, rad/s] is than one of a joint [rad/s]. 1: the plain pseudo-inverse."""
 NEAR = 0.01
 """Below det M = NEAR (trace M)^2 the inverse is damped, the more the nearer to singular (Nakamura, Hanafusa 1986)."""
 
@@ -38,6 +38,10 @@ class Weighted:
         self._cheap = 1.0 / base_weight
 
     def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
+        """Return `split_joints` for the joints that put the hand at (l [m], psi [rad])."""
+        return self.split_joints(inverse(l, psi, *self._arm.links, self._arm.elbow), u_r, u_t)
+
+    def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
         """Return q = W^-1 J^T M^-1 u, M = J W^-1 J^T (damped where it is nearly singular).
 
         q = (v_b, w_b, dtheta_1, dtheta_2), J of the true kinematics:
@@ -45,10 +49,11 @@ class Weighted:
         """
         a, b = self._arm.links
         mount = self.mount
+        l, psi = forward(theta[0], theta[1], a, b)
         c, sn = cos(psi + mount.yaw), sin(psi + mount.yaw)
         k_r = mount.s_x * sn - mount.s_y * c
         k_t = l + mount.s_x * c + mount.s_y * sn
-        j_l, j_psi = jacobian(inverse(l, psi, a, b, self._arm.elbow)[1], a, b)
+        j_l, j_psi = jacobian(theta[1], a, b)
         w = self._cheap
         m_rr = w * (c * c + k_r * k_r) + j_l * j_l
         m_rt = w * (k_r * k_t - c * sn) + j_l * l * j_psi
@@ -69,7 +74,7 @@ class Weighted:
         dtheta_2 = j_l * y_r + l * j_psi * y_t
         if not math.isfinite(v_b + w_b + dtheta_1 + dtheta_2):
             return NO_SOLUTION
-        return shared(psi, mount, u_r, v_b, w_b, j_l * dtheta_2, dtheta_1 + j_psi * dtheta_2)
+        return shared(psi, mount, u_r, v_b, w_b, (dtheta_1, dtheta_2), j_l, j_psi)
 
 
 def weighted(

@@ -41,9 +41,10 @@ def _table(title: str, rows: dict[str, Any]) -> str:
 def _parts(found: dict[str, Any]) -> str:
     parts = found["qp_parts_us"]
     return (
-        f"Whole step of the QP with daqp's own interface, mean {parts['whole']:.3g} us: model {parts['model']:.3g} "
+        f"Whole step of the QP with daqp-direct, mean {parts['whole']:.3g} us: model {parts['model']:.3g} "
         f"(kinematics, P, q),\n  daqp's C core {parts['core']:.3g} (as it reports itself), "
-        f"allocation and call {parts['allocation_and_call']:.3g}"
+        f"allocation and call {parts['allocation_and_call']:.3g}.\n"
+        "  The QP holds the robot's speed limits in its bounds; our step leaves them to the loop (see `in the loop`)."
     )
 
 
@@ -84,7 +85,7 @@ def _batch(batch: dict[str, Any]) -> str:
 
 
 def _targets(targets: list[dict[str, Any]]) -> str:
-    lines = ["To be reached"]
+    lines = ["What this project set out to reach"]
     for one in targets:
         mark = "reached" if one["reached"] else "MISSED "
         lines.append(f"  {mark}  {one['name']:<76}{one['value']:>10.4g}  of {one['target']:.4g}")

@@ -32,10 +32,14 @@ class Target(Record, frozen=True):
         return self.value >= self.target
 
 
+CALL = (
+    "half of the compiled step is the call from Python (see `empty call` above), "
+    "and this QP has its model written out in closed form"
+)
 REASONS = {
-    "mean": "calling a compiled function from Python costs about 0.1 us, as much as the step in it",
+    "mean": CALL,
     "max": "the longest call of a round is the system's (interrupts, the other tenants of the machine), not the step's",
-    "min": "calling a compiled function from Python costs about 0.1 us, as much as the step in it",
+    "min": CALL,
     "default": (
         "the interpreter needs about 1.5 us for the step's arithmetic, and qpsolvers with quadprog only about 30: "
         "compiled, the same source is there"

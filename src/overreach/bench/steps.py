@@ -70,9 +70,10 @@ def steps(rows: list[Row], fast: bool) -> list[Candidate]:
     more = (soft.rise, (*LIMITS, soft.k_l, soft.k_psi), CENTRED, 0.5, 0.5)
     found = [Candidate(PLAIN, planar_step, [(*state, *more) for state in hand_states])]
     if fast:
-        from overreach.fast.robot import compile_step
+        from overreach.fast.robot import compile_step, empty_call
 
         found.append(Candidate(COMPILED, compile_step(), hand_states))
+        found.append(Candidate("step exact, compiled: empty call", empty_call(), hand_states))
     robot = PlanarRobot()
     controller = HandController(robot, exact_law())
     measured = [(_measured(row), row.v_c, row.w_c, 0.005) for row in rows]
@@ -99,7 +100,8 @@ def parts_of_qp(rows: list[Row], name: str = DIRECT) -> list[Candidate]:
     problems, models = [], []
     for row in rows:
         j_l, j_psi = polar_rates(row.theta_2, 0.0, 1.0, 0.5, 0.5)
-        problems.append(law.problem(row.psi, j_l, j_psi, row.v_c, row.w_c))
+        P, q = law.problem(row.psi, j_l, j_psi, row.v_c, row.w_c)
+        problems.append((P.copy(), q.copy()))
         models.append((row.theta_1, row.theta_2, row.v_c, row.w_c))
     return [
         Candidate("model of the QP: kinematics, P and q", law.model, models),

@@ -9,6 +9,7 @@ import msgspec
 from nicegui import ui
 
 from overreach.cockpit.relay import Relay
+from overreach.errors import OverreachError
 from overreach.law.blend import BLENDS
 from overreach.link.messages import Accepted, Refused, Settings
 from overreach.plugs import LAWS, names, takes
@@ -142,7 +143,10 @@ class SettingsPanel:
             slider.value = value
         self._length.value = {"min": settings.l_min, "max": settings.l_max}
         self._bearing.value = {"min": settings.psi_min, "max": settings.psi_max}
-        blending = "blend" in takes(settings.law)
+        try:
+            blending = "blend" in takes(settings.law)
+        except (OverreachError, ImportError):  # a law that only the robot's side has
+            blending = True
         self._tanh.visible = settings.blend == "tanh" and blending
         self._smooth.visible = settings.blend == "smoothstep" and blending
         self._blend.set_enabled(blending)

@@ -20,10 +20,17 @@ def check_writable(path: Path, option: str) -> None:
         raise SetupError(
             f"{option} {str(path)!r} is a folder: name a file, such as {str(path / ('run' + _suffix(option)))!r}"
         )
+    if folder.exists() and not folder.is_dir():
+        raise SetupError(f"{option} {str(path)!r}: {str(folder)!r} is a file: name a file in a folder")
     if not folder.is_dir():
         raise SetupError(f"{option} {str(path)!r}: there is no folder {str(folder)!r}: make it first")
-    if not os.access(folder, os.W_OK):
-        raise SetupError(f"{option} {str(path)!r}: the folder {str(folder)!r} is not writable")
+    try:  # os.access says yes to folders in which nothing can be made
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise SetupError(
+            f"{option} {str(path)!r}: cannot write in {str(folder)!r} ({error.strerror}): name another folder"
+        ) from None
 
 
 def _suffix(option: str) -> str:

@@ -123,12 +123,17 @@ LINES: tuple[tuple[str, str, str], ...] = (
 """Field, label, unit: in the order in which they are shown."""
 
 
+def _shown(value: float) -> str:
+    """Return four figures, and 0 for what is rounding."""
+    return "0" if abs(value) < 1e-12 else f"{value:.4g}"
+
+
 def table(summary: Summary) -> str:
     """Return the summary as a table to print."""
     head = (
         f"{summary.scenario}: law {summary.law}, frame {summary.frame}, blend {summary.blend}, "
         f"{summary.steps} steps, {summary.duration:g} s"
     )
-    body = [f"  {label:<32}{getattr(summary, key):>12.4g}  {unit}".rstrip() for key, label, unit in LINES]
+    body = [f"  {label:<32}{_shown(getattr(summary, key)):>12}  {unit}".rstrip() for key, label, unit in LINES]
     told = ", ".join(f"{name} {count}" for name, count in summary.verdicts.items())
     return "\n".join([head, *body, f"  verdicts [steps]: {told}"])

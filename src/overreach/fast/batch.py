@@ -48,6 +48,8 @@ def compile_batch(robot: PlanarRobot | None = None, blend: Blend | None = None, 
 
     def step(states: Array, rates: Array) -> None:
         n = _checked(states, rates)
+        if not states.flags.writeable:  # the compiled code is for arrays that can be written to; it does not write here
+            states = states.copy()
         (one if n < few else many)(states, rates)
 
     return step
@@ -56,10 +58,14 @@ def compile_batch(robot: PlanarRobot | None = None, blend: Blend | None = None, 
 def _checked(states: Array, rates: Array) -> int:
     """Return the number of robots; raise SetupError unless the arrays can be used as they are."""
     for name, array, rows in (("states", states, IN), ("rates", rates, OUT)):
-        fits = isinstance(array, np.ndarray) and array.ndim == 2 and array.shape[0] == rows
+        fits = type(array) is np.ndarray and array.ndim == 2 and array.shape[0] == rows
         if not (fits and array.dtype == np.float64 and array.flags.c_contiguous):
             found = f"{array.shape} {array.dtype}" if isinstance(array, np.ndarray) else type(array).__name__
             raise SetupError(f"{name} must be a C-contiguous float64 array of shape ({rows}, n), got {found}")
+    if not rates.flags.writeable:
+        raise SetupError("rates must be an array that can be written to")
+    if np.may_share_memory(states, rates):
+        raise SetupError("states and rates must not share memory: what is written would be read again")
     if states.shape[1] != rates.shape[1]:
         raise SetupError(f"states are of {states.shape[1]} robots, rates of {rates.shape[1]}: they must be as many")
     return int(states.shape[1])

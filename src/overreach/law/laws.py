@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol, final
+from typing import Protocol, final, runtime_checkable
 
 from overreach.errors import WorkspaceError
 from overreach.law import authority
@@ -31,6 +31,15 @@ class Law(Protocol):
 
         Every number is finite for finite input with l > 0; nothing is raised.
         """
+        ...
+
+
+@runtime_checkable
+class JointLaw(Law, Protocol):
+    """A law that decides joint rates itself, and so wants to know the joints: a controller asks it so."""
+
+    def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
+        """Return the shares, joint rates among them, for the arm at joint angles theta [rad]; as `split` otherwise."""
         ...
 
 

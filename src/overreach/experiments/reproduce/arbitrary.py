@@ -7,12 +7,13 @@ from math import cos, sin
 from overreach.experiments.reproduce.lab import Lab, Section
 from overreach.experiments.reproduce.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
 from overreach.experiments.run import Run
+from overreach.law.blend import tanh
 from overreach.law.laws import exact, paper
 
 
 def section(lab: Lab) -> Section:
     """Run `mixed` with `paper` and `exact`, draw shares and errors side by side."""
-    runs = {"paper": lab.run("mixed", paper()), "exact": lab.run("mixed", exact())}
+    runs = {"paper": lab.run("mixed", paper(blend=tanh())), "exact": lab.run("mixed", exact(blend=tanh()))}
     figure, axes = panels(4, 2, sharex=True, sharey="row", height=1.7)
     for (name, run), column in zip(runs.items(), axes.T, strict=True):
         _draw(run, column, name)
@@ -33,16 +34,22 @@ def section(lab: Lab) -> Section:
         "arbitrary",
         "An arbitrary drive: does the hand do what it is told?",
         [
-            "Linear and angular commands together, in both directions, for 20 s. The dashed line is what was "
+            "Linear and angular commands together, in both directions, for 20 s; both laws with the paper's tanh, α = β = 50. The dashed line is what was "
             "commanded; the violet one is how the hand <b>truly</b> moves when base and arm are rigid bodies. The "
             "shares of base and arm are smooth with both laws. But the paper's sum is exact only in its own model, "
             "which leaves out that a base driving forward also carries a hand that is off its axis sideways: its hand "
-            f"is wrong by up to {his.ee_error_max:.2f} m/s ({his.ee_error_rms:.3f} rms) and ends "
-            f"{his.ee_path_error:.2f} m from where it was sent. With <code>exact</code> the greatest error is "
+            f"is wrong by up to {his.ee_error_max:.2f} m/s ({his.ee_error_rms:.3f} rms) and is led "
+            f"up to {his.ee_path_error:.2f} m off its path. With <code>exact</code> the greatest error is "
             f"{ours.ee_error_max:.0e} m/s. It asks more of the base's turning for that: up to {ours.peak_w_b:.2f} "
             f"rad/s, against {his.peak_w_b:.2f}."
         ],
-        [lab.picture("arbitrary", figure, "Scenario mixed: commands, shares, the hand's true motion; paper and exact")],
+        [
+            lab.picture(
+                "arbitrary",
+                figure,
+                "Scenario mixed, tanh 50: commands, shares, the hand's true motion; paper and exact, each in its own frame",
+            )
+        ],
     )
 
 

@@ -59,7 +59,7 @@ def section(lab: Lab) -> Section:
             axis.set_title(f"{command} {'≥' if outward else '<'} 0: around ${letter}_{{{subscript}}}$ = {end:g} {unit}")
     figure.legend(
         handles=axes[0][1].get_legend_handles_labels()[0],
-        labels=["tanh, α or β = 10", "50", "100", f"smoothstep, Q = {WIDTH}", "limit"],
+        labels=["tanh, α or β = 10", "tanh, 50", "tanh, 100", f"smoothstep, Q = {WIDTH}", "limit"],
         loc="outside upper center",
         ncols=5,
     )

@@ -57,7 +57,8 @@ def section(lab: Lab) -> Section:
             f"{100 * sharp['beyond_at_600_s']:.1f} cm after ten; with α = 10 it is at "
             f"{100 * slow['beyond_at_600_s']:.0f} cm, straight and at the end of its reach (here "
             "the arm stops it, not the law). A smoothstep of about the same width is exactly 1 at the end of its "
-            f"band: {100 * compact['beyond_at_600_s']:.1f} cm after ten minutes, and after ten years."
+            f"band, so that the hand cannot pass it: {100 * compact['beyond_at_600_s']:.1f} cm after ten minutes. "
+            "This is the blend's doing, not the law's: both laws take either."
         ],
         [lab.picture("creep", figure, "Length of the arm over ten minutes of pushing outward, logarithmic time")],
     )

@@ -66,7 +66,7 @@ def section(lab: Lab) -> Section:
             "Beyond the limit the base has everything, and drives v_c/cos ψ so that the hand's motion along r is right. "
             "The same drive moves the hand sideways by v_c tan ψ, and nothing takes that back: at the edge of the "
             f"workspace (ψ = 0.6 rad) {worst:.2f} m/s of 0.4, {100 * worst / 0.4:.0f} %. The dots are the formula. "
-            f"With <code>exact</code> the error is {zero:.0e} m/s everywhere on this map: the arm closes what the base leaves."
+            f"With <code>exact</code> the error is {zero:.0e} m/s everywhere on this map, with the same blend: the arm closes what the base leaves."
         ],
         [lab.picture("distortion", figure, "Error of the hand's velocity with the paper's law over bearing and speed")],
     )

@@ -25,8 +25,9 @@ def headline(results: dict[str, Any]) -> str:
         "the same, greatest [m/s]": [mixed[name]["ee_error_max"] for name in LAWS],
         "hand led off its path [m]": [mixed[name]["ee_path_error"] for name in LAWS],
         "farthest out of the workspace, l [m]": [mixed[name]["outside_l"] for name in LAWS],
+        "farthest out of the workspace, ψ [rad]": [mixed[name]["outside_psi"] for name in LAWS],
         "base driven for a 10 cm reach [cm]": [100.0 * reach[name]["base_travel"] for name in LAWS],
-        "one decision in plain Python [us]": [laws[f"{name}, plain"]["mean"] for name in LAWS],
+        "one decision, called from Python [us]": [laws[f"{name}, plain"]["mean"] for name in LAWS],
     }
     lines = [
         "| | " + " | ".join(LAWS.values()) + " |",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import tempfile
+import threading
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib import import_module
 from pathlib import Path
@@ -34,8 +36,13 @@ def check_folder(out: Path) -> None:
     above = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
     if not above.is_dir():
         raise SetupError(f"--out {str(out)!r}: {str(above)!r} is a file: name a folder")
-    if not os.access(above, os.W_OK):
-        raise SetupError(f"--out {str(out)!r}: the folder {str(above)!r} is not writable")
+    try:
+        with tempfile.TemporaryFile(dir=above):
+            pass
+    except OSError as error:
+        raise SetupError(
+            f"--out {str(out)!r}: cannot write in {str(above)!r} ({error.strerror}): name another folder"
+        ) from None
 
 
 def reproduce(out: Path, progress: bool = True) -> dict[str, Any]:
@@ -77,6 +84,9 @@ def work(name: str, out: Path) -> Done:
 def _side_by_side(names: list[str], out: Path, finished: Any) -> None:
     """Do sections in processes of their own, the longest first."""
     fresh = multiprocessing.get_context("spawn")  # a fork would take threads along that are not its own
+    before: Any = signal.SIG_DFL
+    if threading.current_thread() is threading.main_thread():  # ended from outside, the workers are to end too
+        before = signal.signal(signal.SIGTERM, _leave)
     pool = ProcessPoolExecutor(min(WORKERS, os.cpu_count() or 1), fresh, _leave_ctrl_c_to_the_parent)
     try:
         jobs = {pool.submit(work, name, out): name for name in sorted(names, key=lambda name: -SECTIONS[name])}
@@ -87,7 +97,14 @@ def _side_by_side(names: list[str], out: Path, finished: Any) -> None:
         for child in multiprocessing.active_children():
             child.terminate()
         raise
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, before)
     pool.shutdown()
+
+
+def _leave(number: int, _frame: object) -> None:
+    raise SystemExit(128 + number)
 
 
 def _leave_ctrl_c_to_the_parent() -> None:

@@ -134,7 +134,7 @@ def section(lab: Lab) -> Section:
         [
             "The hand is sent at 0.4 m/s or 0.4 rad/s from inside the workspace through one limit, back by "
             "reversing through the other, and forward again. The arm moves until its limit is near, the base takes "
-            "over, and on reversing the arm comes back at once. <b>Here the paper is right</b>: straight along the "
+            "over, and on reversing the arm comes back at once. <b>Here the paper's law does what it promises</b>: straight along the "
             "base's axis its model and true kinematics agree. The simulation follows the closed form (Wright's omega) "
             f"to {worst:.1e} m or rad, and <code>exact</code> does the same to {differs:.0e}. In the phase plots base "
             "and arm cross over at the limit, and the way out is not the way back."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, sin
 
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
@@ -46,7 +46,7 @@ def section(lab: Lab) -> Section:
         [
             "The arm points 0.4 rad to the left, the stick says forward. The hand should go along the thin grey line. With the "
             f"paper's law it goes {abs(his['direction_off']):.3f} rad off, forward as in reverse: the base drives along "
-            "its own axis, crabbing for ever with the arm out to the side. With <code>exact</code> the hand stays on "
+            "its own axis, with the arm out to the side. With <code>exact</code> the hand stays on "
             f"its line to {1000 * ours['off_the_line_max']:.1f} mm (the base's arcs within a step), while the base turns in behind it: "
             f"at the end the arm points straight ahead (ψ = {ours['psi_end']:.3f} rad). Reversing is stable too."
         ],
@@ -88,7 +88,7 @@ def _draw(axis: Axes, run: Run, way: str) -> None:
     for k, row in enumerate(run.rows[::stride] + run.rows[-1:]):
         _robot(axis, run, row, "arm" if k == 0 else None)
     axis.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
-    axis.set_xlim((-0.9, 9.4) if way == "forward" else (-8.6, 1.7))
+    axis.set_xlim((-0.9, 9.4) if way == "forward" else (-9.0, 1.3))
     axis.set_ylim((-0.8, 3.9) if way == "forward" else (-3.9, 0.8))
 
 
@@ -108,6 +108,5 @@ def _robot(axis: Axes, run: Run, row: Row, label: str | None) -> None:
     bearing = row.theta_b + row.theta_1
     a = model.arm.links[0]
     elbow = (row.x_b + a * cos(bearing), row.y_b + a * sin(bearing))
-    assert hypot(elbow[0] - row.x_b, elbow[1] - row.y_b) > 0.0
     axis.plot([row.x_b, elbow[0], row.x_e], [row.y_b, elbow[1], row.y_e], color=ARM, linewidth=1.3, label=label)
     axis.plot(row.x_e, row.y_e, "o", color=HAND, markersize=3.5)
