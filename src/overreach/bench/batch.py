@@ -50,10 +50,9 @@ def resident_mb() -> float:
     return pages * resource.getpagesize() / 1e6
 
 
-def per_second(step: Callable[[Array, Array], None], states: Array, rounds: int) -> list[float]:
+def per_second(step: Callable[[Array, Array], None], states: Array, rates: Array, rounds: int) -> list[float]:
     """Return the robots stepped per second in each round."""
     n = states.shape[1]
-    rates = np.empty((OUT, n))
     repeats = max(1, FEW_ROBOTS // n)
     step(states, rates)
     found = []
@@ -81,27 +80,29 @@ def measure(rounds: int = 15, tell: Callable[[str], object] = lambda what: None)
     tell("batch of a million robots")
     # In turns, as everywhere: ours, numpy, one thread, ours with tanh.
     ours, numpys, alone, steep = [], [], [], []
-    batch(states, np.empty((OUT, HEADLINE)))
+    rates = np.empty((OUT, HEADLINE))
+    for step in (batch, batch_tanh):
+        step(states, rates)
     before = most = resident_mb()
     for _ in range(rounds):
-        ours += per_second(batch, states, 1)
-        steep += per_second(batch_tanh, states, 1)
+        ours += per_second(batch, states, rates, 1)
+        steep += per_second(batch_tanh, states, rates, 1)
         numba.set_num_threads(1)
         try:
-            alone += per_second(batch, states, 1)
+            alone += per_second(batch, states, rates, 1)
         finally:
             numba.set_num_threads(threads)
         most = max(most, resident_mb())
     ours_grew = most - before
     for _ in range(max(2, rounds // 5)):
-        numpys += per_second(by_numpy, states, 1)
+        numpys += per_second(by_numpy, states, rates, 1)
     tell("batches of other sizes")
     sizes = {}
     for n in SIZES:
-        some = states[:, :n].copy()
+        some, out = states[:, :n].copy(), np.empty((OUT, n))
         sizes[str(n)] = {
-            "compiled": statistics.median(per_second(batch, some, rounds)),
-            "numpy": statistics.median(per_second(by_numpy, some, max(2, rounds // 5))),
+            "compiled": statistics.median(per_second(batch, some, out, rounds)),
+            "numpy": statistics.median(per_second(by_numpy, some, out, max(2, rounds // 5))),
         }
     many = spread(ours)
     return {
