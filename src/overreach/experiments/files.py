@@ -24,13 +24,19 @@ def check_writable(path: Path, option: str) -> None:
         raise SetupError(f"{option} {str(path)!r}: {str(folder)!r} is a file: name a file in a folder")
     if not folder.is_dir():
         raise SetupError(f"{option} {str(path)!r}: there is no folder {str(folder)!r}: make it first")
-    try:  # os.access says yes to folders in which nothing can be made
+    try_to_write(folder, f"{option} {str(path)!r}")
+
+
+def try_to_write(folder: Path, asked: str) -> None:
+    """Raise SetupError, beginning with what was `asked`, where no file can be made in `folder`.
+
+    It is tried: os.access says yes to folders in which nothing can be made.
+    """
+    try:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise SetupError(
-            f"{option} {str(path)!r}: cannot write in {str(folder)!r} ({error.strerror}): name another folder"
-        ) from None
+        raise SetupError(f"{asked}: cannot write in {str(folder)!r} ({error.strerror}): name another folder") from None
 
 
 def _suffix(option: str) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import tempfile
 import threading
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib import import_module
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from overreach.errors import SetupError
+from overreach.experiments.files import try_to_write
 from overreach.extras import require
 
 if TYPE_CHECKING:
@@ -36,13 +36,7 @@ def check_folder(out: Path) -> None:
     above = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
     if not above.is_dir():
         raise SetupError(f"--out {str(out)!r}: {str(above)!r} is a file: name a folder")
-    try:
-        with tempfile.TemporaryFile(dir=above):
-            pass
-    except OSError as error:
-        raise SetupError(
-            f"--out {str(out)!r}: cannot write in {str(above)!r} ({error.strerror}): name another folder"
-        ) from None
+    try_to_write(above, f"--out {str(out)!r}")
 
 
 def reproduce(out: Path, progress: bool = True) -> dict[str, Any]:
@@ -96,6 +90,9 @@ def _side_by_side(names: list[str], out: Path, finished: Any) -> None:
         pool.shutdown(wait=False, cancel_futures=True)
         for child in multiprocessing.active_children():
             child.terminate()
+            child.join(5.0)
+        for part in out.rglob("*.part"):  # what a worker was writing
+            part.unlink()
         raise
     finally:
         if threading.current_thread() is threading.main_thread():
