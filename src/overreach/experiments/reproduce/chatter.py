@@ -45,7 +45,7 @@ def section(lab: Lab) -> Section:
             f"{key.replace('_', ', ')}\n{'at the corner' if scenario == 'dither' else 'pushing outward'}"
         )
         column[1].plot(t, [asked[0] for _, asked in some], color=BASE, linewidth=0.9)
-        most = 0.008 if scenario == "dither" else 0.07
+        most = 0.014 if scenario == "dither" else 0.07
         column[1].set(ylim=(-0.04 * most, most), xlabel="t [s]")
     axes[0][0].set_ylabel("μ, base's share [1]")
     axes[1][0].set_ylabel("$v_b$ asked [m/s]")
