@@ -50,16 +50,16 @@ REASONS = {
 
 def time_steps(rounds: int, samples: int = 1_000, tell: Callable[[int], object] = lambda done: None) -> dict[str, Any]:
     """Return what laws and whole steps take for one robot, and the ratios. Compiled only where numba is installed."""
-    rows = steps.stream(samples)
+    rows = steps.stream(min(samples, steps.DISTINCT))
     fast = _has("numba")
     laws, whole, parts = steps.laws(rows, fast), steps.steps(rows, fast), steps.parts_of_qp(rows)
-    took = in_turns([*laws, *whole, *parts], rounds, tell)
+    took = in_turns(steps.repeated([*laws, *whole, *parts], samples), rounds, tell)
     qps = {one.name: took[one.name] for one in whole if one.name.startswith("step qp")}
     fastest = min(qps, key=lambda name: qps[name].of("mean").median)
     model, call = (took[one.name].of("mean").median for one in parts)
     core = steps.core_of_daqp(rows)
     found: dict[str, Any] = {
-        "samples": len(rows),
+        "samples": samples,
         "rounds": rounds,
         "law_us": _named(laws, took, "law "),
         "step_us": {"plain": took[steps.PLAIN].as_dict()},

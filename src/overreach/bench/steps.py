@@ -32,13 +32,24 @@ DEFAULT_QP = "step qp, quadprog"
 """The default way to a quadratic program from Python: qpsolvers with quadprog."""
 
 
-def stream(samples: int = 1_000) -> list[Row]:
+DISTINCT = 250
+"""Different states in a round, gone through again and again: few enough to stay in cache, as those of a loop do."""
+
+
+def stream(samples: int = DISTINCT) -> list[Row]:
     """Return states and commands evenly from the scenario `mixed`: arm alone, blending and base alone all occur.
 
     Moments without a command are left out: the closed forms would be done with them at once.
     """
     rows = [row for row in simulate("mixed", exact_law(blend=smoothstep())).rows if row.v_c or row.w_c]
     return rows[:: max(1, len(rows) // samples)][:samples]
+
+
+def repeated(candidates: list[Candidate], samples: int) -> list[Candidate]:
+    """Return the candidates with their arguments gone through until there are `samples` calls in a round."""
+    for one in candidates:
+        one.arguments = (list(one.arguments) * -(-samples // len(one.arguments)))[:samples]
+    return candidates
 
 
 def _polar(row: Row) -> tuple[float, float, float, float]:
