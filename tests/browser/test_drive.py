@@ -107,7 +107,7 @@ def test_keyboard(page: Page, cockpit: Cockpit) -> None:
     until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
     for key, wish in (("w", (0.4, 0.0)), ("a", (0.0, 0.4)), ("s", (-0.4, 0.0)), ("d", (0.0, -0.4))):
         page.keyboard.down(key)
-        until(lambda wish=wish: (cockpit.observer.now.v_c, cockpit.observer.now.w_c) == wish, what=key)  # type: ignore[misc]
+        until(lambda wish=wish: (cockpit.observer.now.v_c, cockpit.observer.now.w_c) == wish, what=key)  # type: ignore[misc]  # bound in a loop
         page.keyboard.up(key)
 
 

@@ -54,7 +54,7 @@ def test_settings_are_live(page: Page, cockpit: Cockpit) -> None:
             before = text.inner_text()
             slider.focus()
             page.keyboard.press(key)
-            until(lambda before=before: text.inner_text() != before, what=f"{field} to answer a key")  # type: ignore[misc]
+            until(lambda before=before: text.inner_text() != before, what=f"{field} to answer a key")  # type: ignore[misc]  # bound in a loop
 
     def force() -> dict[str, object]:
         settings = observer.link.welcome(5.0).settings
@@ -150,7 +150,7 @@ def test_layout(page: Page) -> None:
         page.set_viewport_size({"width": width, "height": height})
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
-            until(lambda scheme=scheme: page.get_attribute("html", "data-theme") == scheme)  # type: ignore[misc]
+            until(lambda scheme=scheme: page.get_attribute("html", "data-theme") == scheme)  # type: ignore[misc]  # bound in a loop
             page.wait_for_timeout(50)
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), width
             for one in ("#arm", "#reset", "#stop", "#pad", "#view", "#verdict", "#authority"):
@@ -176,7 +176,7 @@ def test_texts_have_contrast(page: Page) -> None:
     style = "getComputedStyle(document.documentElement).getPropertyValue('--{}').trim()"
     for scheme in SCHEMES:
         page.emulate_media(color_scheme=scheme)
-        until(lambda scheme=scheme: page.get_attribute("html", "data-theme") == scheme)  # type: ignore[misc]
+        until(lambda scheme=scheme: page.get_attribute("html", "data-theme") == scheme)  # type: ignore[misc]  # bound in a loop
         for surface in ("panel", "bg"):
             behind = luminance(page.evaluate(style.format(surface)))
             for name in ("ink", "muted", "arm", "base", "ok", "warn", "hand"):

@@ -14,9 +14,10 @@ from overreach.bench.vectorised import numpy_step
 from overreach.errors import SetupError
 from overreach.fast import mathematics
 from overreach.fast.batch import FEW, Batch, compile_batch
-from overreach.fast.robot import compile_law, compile_step, constants
+from overreach.fast.robot import compile_law, compile_step
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep, tanh
+from overreach.law.laws import constants
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 

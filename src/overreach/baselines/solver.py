@@ -30,18 +30,10 @@ SOLVERS = (*SETTINGS, DIRECT, MODEL)
 
 
 class Solve(Protocol):
-    """min 1/2 x^T P x + q^T x subject to G x <= h, A x = b, lb <= x <= ub; any of G, h and A, b may be None."""
+    """min 1/2 x^T P x + q^T x subject to lb <= x <= ub and, where they are given, A x = b."""
 
     def __call__(
-        self,
-        P: Array,
-        q: Array,
-        lb: Array,
-        ub: Array,
-        G: Array | None = None,
-        h: Array | None = None,
-        A: Array | None = None,
-        b: Array | None = None,
+        self, P: Array, q: Array, lb: Array, ub: Array, A: Array | None = None, b: Array | None = None
     ) -> Array | None:
         """Return x, or None where the solver found none. Nothing is raised."""
         ...
@@ -54,8 +46,10 @@ def solver(name: str, **settings: float) -> Solve:
     """
     if name not in SOLVERS:
         raise UnknownNameError("QP solver", name, SOLVERS)
-    if name in (DIRECT, MODEL):
-        return _direct(settings, name == MODEL)
+    if name == DIRECT:
+        return _direct(settings)
+    if name == MODEL:
+        return _kept(settings)
     qpsolvers = require("qpsolvers", "qp", f"the QP solver {name}")
     if name not in qpsolvers.available_solvers:
         require("proxsuite" if name == "proxqp" else name, "qp", f"the QP solver {name}")
@@ -63,83 +57,72 @@ def solver(name: str, **settings: float) -> Solve:
     chosen = SETTINGS[name] | settings
     pack = require("scipy.sparse", "qp", f"the QP solver {name}").csc_matrix if name in SPARSE else None
 
-    def solve(
-        P: Array,
-        q: Array,
-        lb: Array,
-        ub: Array,
-        G: Array | None = None,
-        h: Array | None = None,
-        A: Array | None = None,
-        b: Array | None = None,
-    ) -> Array | None:
+    def solve(P: Array, q: Array, lb: Array, ub: Array, A: Array | None = None, b: Array | None = None) -> Array | None:
         if pack is not None:
-            P, G, A = (None if matrix is None else pack(matrix) for matrix in (P, G, A))
+            P, A = pack(P), None if A is None else pack(A)
         try:
-            return solve_qp(P, q, G, h, A, b, lb, ub, solver=name, **chosen)
+            return solve_qp(P, q, None, None, A, b, lb, ub, solver=name, **chosen)
         except Exception:  # whatever a solver raises, the robot is to stand still
             return None
 
     return solve
 
 
-def _direct(settings: dict[str, float], keep: bool) -> Solve:
+def _direct(settings: dict[str, float]) -> Solve:
+    """Return daqp's own function. What does not change from call to call is made once."""
     numpy = require("numpy", "qp", "the QP solver daqp")
-    daqp = require("daqp", "qp", "the QP solver daqp")
-    run = daqp.solve
-    kept: dict[tuple[int, int], tuple[Any, Array, Array]] = {}
-    nothing: dict[int, Array] = {}
-    senses: dict[tuple[int, int], Array] = {}
+    run = require("daqp", "qp", "the QP solver daqp").solve
+    boxes: dict[int, tuple[Array, Array]] = {}
 
-    def solve(
-        P: Array,
-        q: Array,
-        lb: Array,
-        ub: Array,
-        G: Array | None = None,
-        h: Array | None = None,
-        A: Array | None = None,
-        b: Array | None = None,
-    ) -> Array | None:
+    def solve(P: Array, q: Array, lb: Array, ub: Array, A: Array | None = None, b: Array | None = None) -> Array | None:
         n = len(q)
-        rows, least, most, equal = (
-            nothing.setdefault(n, numpy.zeros((0, n))) if G is None and A is None else None,
-            lb,
-            ub,
-            0,
-        )
-        if G is not None and h is not None:
-            rows, most = G, numpy.concatenate((ub, h))
-            least = numpy.concatenate((lb, numpy.full(len(h), -1e30)))
-        if A is not None and b is not None:
-            rows = A if G is None else numpy.vstack((G, A))
-            most, least, equal = numpy.concatenate((most, b)), numpy.concatenate((least, b)), len(b)
-        key = (len(most), equal)
-        sense = senses.get(key)
-        if sense is None:
-            sense = senses[key] = numpy.zeros(len(most), dtype=numpy.intc)
-            sense[len(most) - equal :] = 5  # daqp's code for an equality
+        if n not in boxes:
+            boxes[n] = _box(numpy, n)
+        rows, sense = boxes[n]
         try:
-            if keep and G is None and A is None:
-                x, flag = warm(P, q, rows, most, least, sense, key)
-            else:
-                x, _, flag, _ = run(P, q, rows, most, least, sense, **settings)
+            if A is not None and b is not None:
+                equal = numpy.full(len(b), 5, dtype=numpy.intc)  # daqp's code for an equality
+                rows, sense = A, numpy.concatenate((sense, equal))
+                lb, ub = numpy.concatenate((lb, b)), numpy.concatenate((ub, b))
+            x, _, flag, _ = run(P, q, rows, ub, lb, sense, **settings)
         except Exception:  # as above
             return None
         return x if flag > 0 else None
 
-    def warm(
-        P: Array, q: Array, rows: Array, most: Array, least: Array, sense: Array, key: tuple[int, int]
-    ) -> tuple[Array, int]:
-        model, ub, lb = kept.get(key, (None, None, None))
-        if model is None or ub is not most or lb is not least:
-            model = daqp.Model()
-            model.setup(P, q, rows, most, least, sense)
-            model.settings = settings
-            kept[key] = model, most, least
-        else:  # with `sense`, or it would begin with the last call's active set: the answer is to be of P and q alone
-            model.update(H=P, f=q, sense=sense)
-        x, _, flag, _ = model.solve()
-        return x, flag
+    return solve
+
+
+def _kept(settings: dict[str, float]) -> Solve:
+    """Return daqp with its workspace kept, for bounds that stay; other problems go the direct way."""
+    numpy = require("numpy", "qp", "the QP solver daqp")
+    daqp = require("daqp", "qp", "the QP solver daqp")
+    direct = _direct(settings)
+    model: Any = None
+    bounds: tuple[Array, Array] | None = None
+    sense: Array = None
+
+    def solve(P: Array, q: Array, lb: Array, ub: Array, A: Array | None = None, b: Array | None = None) -> Array | None:
+        nonlocal model, bounds, sense
+        if A is not None:
+            return direct(P, q, lb, ub, A, b)
+        try:
+            if bounds is None or bounds[0] is not lb or bounds[1] is not ub:
+                rows, sense = _box(numpy, len(q))
+                model = daqp.Model()
+                model.setup(P, q, rows, ub, lb, sense)
+                model.settings = settings
+                bounds = lb, ub
+            else:
+                # With `sense`, or it would begin with the last call's active set: the answer is to be of P and q alone.
+                model.update(H=P, f=q, sense=sense)
+            x, _, flag, _ = model.solve()
+        except Exception:  # as above
+            return None
+        return x if flag > 0 else None
 
     return solve
+
+
+def _box(numpy: Any, n: int) -> tuple[Array, Array]:
+    """Return daqp's rows and senses of a problem with bounds on its n variables and nothing else."""
+    return numpy.zeros((0, n)), numpy.zeros(n, dtype=numpy.intc)

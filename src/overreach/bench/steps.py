@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from overreach.arm.planar import polar_rates
+from overreach.arm.planar import jacobian
 from overreach.arm.step import planar_step, polar_step
 from overreach.baselines.holistic import holistic
 from overreach.baselines.qp import PaperQP, qp
@@ -18,12 +18,12 @@ from overreach.experiments.run import Row, simulate
 from overreach.law.authority import exact, paper
 from overreach.law.blend import smoothstep, tanh
 from overreach.law.frame import hand
+from overreach.law.laws import constants
 from overreach.law.laws import exact as exact_law
+from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.types import RobotState
 
-LIMITS = (0.45, 0.85, -0.6, 0.6)
-CENTRED = (0.0, 0.0, 0.0)
 SLOW_EVERY = 5
 """Solvers that take half a millisecond run in every fifth round."""
 
@@ -63,7 +63,7 @@ def laws(rows: list[Row], fast: bool) -> list[Candidate]:
     polar = [_polar(row) for row in rows]
     plain = []
     for name, share, blend in (("exact", exact, soft), ("paper", paper, steep)):
-        more = (blend.rise, (*LIMITS, blend.k_l, blend.k_psi), CENTRED)
+        more = (blend.rise, *constants(Workspace(), blend, Mount()))
         plain.append(Candidate(f"law {name}, plain", share, [(*one, *more) for one in polar]))
     others: list[Any] = [separate(), weighted(), qp(solver=DIRECT), holistic(solver=DIRECT)]
     plain += [Candidate(f"law {law.name}, plain", law.split, polar) for law in others]
@@ -78,19 +78,19 @@ def steps(rows: list[Row], fast: bool) -> list[Candidate]:
     """Return whole steps, from joint angles and command to base twist and joint rates."""
     soft, steep = smoothstep(), tanh()
     hand_states = [(row.theta_1, row.theta_2, row.theta_b, row.theta_e, row.v_c, row.w_c) for row in rows]
-    more = (soft.rise, (*LIMITS, soft.k_l, soft.k_psi), CENTRED, 0.5, 0.5)
+    robot = PlanarRobot()
+    more = (soft.rise, *constants(robot.workspace, soft, robot.mount), *robot.arm.links)
     found = [Candidate(PLAIN, planar_step, [(*state, *more) for state in hand_states])]
     if fast:
         from overreach.fast.robot import compile_step, empty_call
 
         found.append(Candidate(COMPILED, compile_step(), hand_states))
         found.append(Candidate("step exact, compiled: empty call", empty_call(), hand_states))
-    robot = PlanarRobot()
     controller = HandController(robot, exact_law())
     measured = [(_measured(row), row.v_c, row.w_c, 0.005) for row in rows]
     found.append(Candidate("step exact, in the loop: limits, records and all", controller.step, measured))
     polar_states = [(row.theta_1, row.theta_2, row.v_c, row.w_c) for row in rows]
-    his = (steep.rise, (*LIMITS, steep.k_l, steep.k_psi), CENTRED, 0.5, 0.5)
+    his = (steep.rise, *constants(robot.workspace, steep, robot.mount), *robot.arm.links)
     found.append(Candidate("step paper, plain", polar_step, [(*state, *his) for state in polar_states]))
     found += [
         Candidate(f"step qp, {name}", qp(solver=name).step, polar_states, SLOW_EVERY if name in SPARSE else 1)
@@ -110,7 +110,7 @@ def parts_of_qp(rows: list[Row], name: str = DIRECT) -> list[Candidate]:
     law: PaperQP = qp(solver=name)
     problems, models = [], []
     for row in rows:
-        j_l, j_psi = polar_rates(row.theta_2, 0.0, 1.0, 0.5, 0.5)
+        j_l, j_psi = jacobian(row.theta_2, *PlanarRobot().arm.links)
         P, q = law.problem(row.psi, j_l, j_psi, row.v_c, row.w_c)
         problems.append((P.copy(), q.copy()))
         models.append((row.theta_1, row.theta_2, row.v_c, row.w_c))
@@ -129,7 +129,7 @@ def core_of_daqp(rows: list[Row]) -> float:
     nothing, sense = np.zeros((0, 4)), np.zeros(4, dtype=np.intc)
     took = []
     for row in rows:
-        j_l, j_psi = polar_rates(row.theta_2, 0.0, 1.0, 0.5, 0.5)
+        j_l, j_psi = jacobian(row.theta_2, *PlanarRobot().arm.links)
         P, q = law.problem(row.psi, j_l, j_psi, row.v_c, row.w_c)
         *_, told = daqp.solve(P, q, nothing, law.q_max, -law.q_max, sense)
         took.append(told["setup_time"] + told["solve_time"])

@@ -30,21 +30,15 @@ def compile_batch(robot: PlanarRobot | None = None, blend: Blend | None = None, 
     """
     fixed = fixed_step(robot or PlanarRobot(), blend or smoothstep())
 
-    def alone(states: Array, rates: Array) -> None:
-        for k in range(states.shape[1]):
-            rates[0, k], rates[1, k], rates[2, k], rates[3, k] = fixed(
-                states[0, k], states[1, k], states[2, k], states[3, k], states[4, k], states[5, k]
-            )
-
-    def together(states: Array, rates: Array) -> None:
-        for k in prange(states.shape[1]):
+    def all_of_them(states: Array, rates: Array) -> None:
+        for k in prange(states.shape[1]):  # where it is not compiled for threads, prange is range
             rates[0, k], rates[1, k], rates[2, k], rates[3, k] = fixed(
                 states[0, k], states[1, k], states[2, k], states[3, k], states[4, k], states[5, k]
             )
 
     signature = ["void(float64[:, ::1], float64[:, ::1])"]
-    one: Any = njit(signature, error_model="numpy", fastmath={"contract"})(alone)
-    many: Any = njit(signature, error_model="numpy", fastmath={"contract"}, parallel=True)(together)
+    one: Any = njit(signature, error_model="numpy", fastmath={"contract"})(all_of_them)
+    many: Any = njit(signature, error_model="numpy", fastmath={"contract"}, parallel=True)(all_of_them)
 
     def step(states: Array, rates: Array) -> None:
         n = _checked(states, rates)

@@ -11,16 +11,11 @@ from overreach.arm.step import planar_step
 from overreach.fast.compiling import compiled
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep
+from overreach.law.laws import constants
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 
 Rates = tuple[float, float, float, float]
-
-
-def constants(workspace: Workspace, blend: Blend, mount: Mount) -> tuple[authority.Limits6, authority.Mount3]:
-    """Return the numbers that the law's functions take."""
-    limits = (workspace.l_min, workspace.l_max, workspace.psi_min, workspace.psi_max, blend.k_l, blend.k_psi)
-    return limits, (mount.s_x, mount.s_y, mount.yaw)
 
 
 def entry(function: Any, arguments: int) -> Callable[..., Any]:

@@ -43,8 +43,14 @@ class JointLaw(Law, Protocol):
         ...
 
 
-def _checked(workspace: Workspace, mount: Mount) -> authority.Mount3:
-    """Return the mount as a tuple; raise where the EE could come over the base's turning centre."""
+def constants(workspace: Workspace, blend: Blend, mount: Mount) -> tuple[authority.Limits6, authority.Mount3]:
+    """Return the numbers that the functions in `authority` take."""
+    limits = (workspace.l_min, workspace.l_max, workspace.psi_min, workspace.psi_max, blend.k_l, blend.k_psi)
+    return limits, (mount.s_x, mount.s_y, mount.yaw)
+
+
+def _check(workspace: Workspace, mount: Mount) -> None:
+    """Raise WorkspaceError where the EE could come over the base's turning centre."""
     worst = workspace.l_min - math.hypot(mount.s_x, mount.s_y)
     if worst <= 0.0:
         # Only a shoulder behind the hand brings it over the turning centre: look at the whole sector.
@@ -57,7 +63,6 @@ def _checked(workspace: Workspace, mount: Mount) -> authority.Mount3:
                     f"with the shoulder at ({mount.s_x:g}, {mount.s_y:g}) m the hand comes over the base's "
                     f"turning centre inside the workspace: choose l_min > {-worst + workspace.l_min:g} m"
                 )
-    return mount.s_x, mount.s_y, mount.yaw
 
 
 @final
@@ -82,15 +87,8 @@ class SharingLaw:
         self.mount = mount
         self._shares = shares
         self._rise = blend.rise
-        self._mount = _checked(workspace, mount)
-        self._limits = (
-            workspace.l_min,
-            workspace.l_max,
-            workspace.psi_min,
-            workspace.psi_max,
-            blend.k_l,
-            blend.k_psi,
-        )
+        _check(workspace, mount)
+        self._limits, self._mount = constants(workspace, blend, mount)
 
     def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
         """Return the shares; see `Law.split`."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, sin
+
+from matplotlib.axes import Axes
 
 from overreach.experiments.reproduce.lab import Lab, Section
 from overreach.experiments.reproduce.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
@@ -53,7 +56,7 @@ def section(lab: Lab) -> Section:
     )
 
 
-def _draw(run: Run, axes: list, name: str) -> None:  # type: ignore[type-arg]  # numpy's array of axes
+def _draw(run: Run, axes: Sequence[Axes], name: str) -> None:
     pairs = thin(list(zip(run.rows, run.errors, strict=True)))
     t = [row.t for row, _ in pairs]
     axes[0].plot(t, [row.v_c for row, _ in pairs], color=INK, label="$v_c$ [m/s]")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot
 
 import msgspec
+from matplotlib.axes import Axes
 
 from overreach.baselines.weighted import weighted
 from overreach.experiments.reproduce.lab import Lab, Section, Table
@@ -31,7 +33,7 @@ WORDS = {key: f"{label.strip()} [{unit}]" if unit else label.strip() for key, la
 
 
 def section(lab: Lab) -> Section:
-    """Run every law on `mixed` and on `reach`; draw commands to base and joints of three."""
+    """Run every law on `mixed` and on `reach`; draw commands to base and joints of four."""
     mixed_polar, reach_polar = (in_polar(name) for name in ("mixed", "reach"))
     mixed = {name: lab.run(mixed_polar, name, f"rivals_mixed_{name}") for name in LAWS}
     reaching = {name: lab.run(reach_polar, name) for name in LAWS}
@@ -142,7 +144,7 @@ def _numbers(summary: Summary) -> dict[str, float]:
     return {key: getattr(summary, key) for key in FIELDS}
 
 
-def _draw(run: Run, axes: list, name: str) -> None:  # type: ignore[type-arg]  # numpy's array of axes
+def _draw(run: Run, axes: Sequence[Axes], name: str) -> None:
     model, dt = run.scenario.model, run.scenario.dt
     rows = thin(list(zip(run.rows[:-1], run.rows[1:], strict=True)))
     t = [row.t for row, _ in rows]
