@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from overreach.arm.planar import inverse
 from overreach.control import HandController
+from overreach.experiments.law_alone import LawAlone
 from overreach.law.blend import step
 from overreach.law.laws import exact, paper
 from overreach.law.workspace import Workspace
@@ -100,7 +101,7 @@ def test_at_rest_nothing_moves(v_c: float, w_c: float) -> None:
     """A zero command gives zero rates, in every frame and pose, also just after another command."""
     robot = KinematicRobot()
     for frame in Frame:
-        controller = HandController(robot.model, exact(), frame, limited=False)
+        controller = LawAlone(robot.model, exact(), frame)
         controller.step(robot.read(0.0), v_c, w_c, DT)
         controller.restart()
         done = controller.step(robot.read(0.0), 0.0, 0.0, DT)
@@ -110,7 +111,7 @@ def test_at_rest_nothing_moves(v_c: float, w_c: float) -> None:
 def test_changing_the_frame_starts_the_heading_anew() -> None:
     """The hand's heading turns at w_c, stays over a change of law, and begins at its bearing with a change of frame."""
     robot = KinematicRobot(psi=0.3)
-    controller = HandController(robot.model, exact(), limited=False)
+    controller = LawAlone(robot.model, exact())
     assert controller.locate(robot.true).theta_e == pytest.approx(0.3)
     for _ in range(100):
         controller.step(robot.true, 0.0, 0.4, DT)

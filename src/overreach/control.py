@@ -1,71 +1,56 @@
-"""From a gated command to rates: frame, law, limits, arm. The part that loop and experiments share."""
+"""From a gated command to rates: feedback, frame, law, residual, limits, arm, guard. Loop and experiments share it."""
 
 from __future__ import annotations
 
-from typing import final
+from math import cos, inf, isfinite
+
+import msgspec
 
 from overreach.arm.limits import fastest_joints
-from overreach.arm.planar import forward, joint_rates_over, polar_rates, polar_to_joint_rates, wrap
+from overreach.arm.planar import forward, inverse, joint_rates_over, polar_rates, polar_to_joint_rates, wrap
+from overreach.errors import LONGEST_NAME, told
+from overreach.gate.feedback import Feedback
+from overreach.gate.guard import Guard
 from overreach.gate.limits import clamp_change, feasible_scale
 from overreach.law.authority import arm_residual
 from overreach.law.frame import FRAMES, heading_rate
-from overreach.law.laws import JointLaw, Law
+from overreach.law.laws import JointLaw, Law, Unusable, check_split
+from overreach.law.lead import lead
 from overreach.model.planar import PlanarRobot
-from overreach.types import BaseTwist, Frame, PolarState, Record, RobotState, Split, Verdict
+from overreach.types import Frame, Motion, PolarState, RobotState, Split, Step, Verdict, weightier
+
+REST = (0.0, 0.0, 0.0, 0.0)
+STILL = Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+_with = msgspec.structs.replace
 
 
-class Step(Record, frozen=True):
-    """What one step decided.
-
-    polar: where the hand is; u_r, u_t: its commanded velocity [m/s]; split: the shares, with the rates
-    as they are applied; dtheta: joint rates [rad/s]; scale: part of the command that is carried out;
-    verdict: MOVING, or why it is less.
-    """
-
-    polar: PolarState
-    u_r: float
-    u_t: float
-    split: Split
-    dtheta: tuple[float, ...]
-    scale: float
-    verdict: Verdict
-
-    @property
-    def twist(self) -> BaseTwist:
-        """The base twist that is applied."""
-        return BaseTwist(self.split.v_b, self.split.w_b)
-
-
-@final
 class HandController:
     """Turns (v_c, w_c) into base twist and joint rates. Keeps the hand's heading and what it last asked for.
 
-    limited: whether the robot's limits of speed and acceleration hold (they do wherever a robot moves;
-    an experiment may want to see the law alone). whole_steps: whether joint rates are chosen so that the
-    period ends exactly at (l + v_m dt, psi + w_m dt), or from the Jacobian.
+    Its limits hold whatever the law says and the robot reports; there is no switch for them. Where that cannot be, it
+    ramps to zero and says FAULT until `reset`. whole_steps: whether joint rates are chosen so that the
+    period ends exactly at (l + v_m dt, psi + w_m dt), or from the Jacobian. ramp_s: how long the command's own ramp to
+    zero takes [s], where that is longer than the robot's.
     """
 
     def __init__(
-        self,
-        model: PlanarRobot,
-        law: Law,
-        frame: Frame | None = None,
-        limited: bool = True,
-        whole_steps: bool = False,
+        self, model: PlanarRobot, law: Law, frame: Frame | None = None, whole_steps: bool = False, ramp_s: float = 0.0
     ) -> None:
         self.model = model
-        self.limited = limited
+        self.guard = Guard(model.channels, ramp_s)
+        self._feedback = Feedback(model.channels)
         self._whole_steps = whole_steps
-        self._theta_e: float | None = None
-        self._asked: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
         self.configure(law, frame)
+        self.restart()
 
     def configure(self, law: Law, frame: Frame | None = None) -> None:
         """Change the law and the command frame; with another frame the hand's heading starts anew at its bearing."""
         chosen = frame or law.frame
         if getattr(self, "frame", None) is not chosen:
-            self._theta_e = None
+            self._theta_e: float | None = None
         self.law = law
+        self._name = f"The law {str(law.name)[:LONGEST_NAME]!r}"
         self._joint_law = law if isinstance(law, JointLaw) else None
         self.frame: Frame = chosen
         self._to_polar = FRAMES[chosen]
@@ -73,9 +58,21 @@ class HandController:
         self._mount = (mount.s_x, mount.s_y, mount.yaw)
 
     def restart(self) -> None:
-        """Forget the past: the robot was put somewhere else, at rest."""
+        """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
+        arm, start = self.model.arm, self.model.start
         self._theta_e = None
-        self._asked = (0.0, 0.0, 0.0, 0.0)
+        self._now = 0.0
+        self._believed = RobotState(
+            -inf, 0.0, 0.0, 0.0, 0.0, 0.0, inverse(start.l, start.psi, *arm.links, arm.elbow), REST[2:]
+        )
+        self._feedback.restart()
+        self.guard.restart()
+
+    def reset(self) -> None:
+        """Leave FAULT. Moves nothing; what caused it is looked at anew."""
+        if self.guard.fault:
+            self._feedback.reset()
+        self.guard.reset()
 
     def locate(self, state: RobotState) -> PolarState:
         """Return where the hand is, seen from the shoulder, and its heading."""
@@ -93,71 +90,152 @@ class HandController:
         """Return the EE velocity (u_r, u_t) [m/s] that a command means with the hand at (l [m], psi [rad])."""
         return self._to_polar(v_c, w_c, l, psi + self._mount[2], theta_b, theta_e)
 
-    def step(self, state: RobotState, v_c: float, w_c: float, dt: float) -> Step:
-        """Return the rates for the period `dt` [s] that begins in `state`, for a command (v_c, w_c)."""
-        polar = self.locate(state)
-        l, psi = polar.l, polar.psi
-        u_r, u_t = self.commanded(v_c, w_c, l, psi, state.theta_b, polar.theta_e)
-        if self._joint_law is None:
-            split = self.law.split(l, psi, u_r, u_t)
-        else:
-            split = self._joint_law.split_joints(state.theta, u_r, u_t)
-        scale = split.scale
-        verdict = split.verdict
-        if verdict is Verdict.MOVING and scale < 1.0:
-            verdict = Verdict.BESIDE
+    def step(
+        self,
+        state: RobotState | None,
+        v_c: float,
+        w_c: float,
+        dt: float,
+        now: float | None = None,
+        motion: Motion | None = None,
+    ) -> Step:
+        """Return the rates for the period `dt` [s] that begins in `state`, for a command (v_c, w_c). Raises nothing.
 
+        state: None where there is none; the last is kept. now [s]: the time, on the clock of `state.t`; by default that
+        of a state that is newer, else dt later. motion: what a gate says; by default a command that is not 0 may move.
+        """
+        if now is None:
+            newer = state is not None and state.t > self._feedback.stamp
+            now = state.t if state is not None and newer else self._now + dt
+        self._now = now
+        state = self._believe(state, now)
+        finite = isfinite(v_c + w_c)
+        if not finite:
+            v_c = w_c = 0.0
+        if motion is None:
+            motion = Motion.NONE if v_c == 0.0 and w_c == 0.0 else Motion.ALLOWED
+        try:
+            step = self._decide(state, v_c, w_c, dt)
+        except Unusable as error:
+            self.guard.latch(f"{self._name} answered {error}.")
+            step = self._still(state)
+        except Exception as error:  # a law that is a plug-in may raise anything
+            self.guard.latch(f"{self._name} raised {told(error)}.")
+            step = self._still(state)
+        if step.split.verdict is not Verdict.MOVING:
+            motion = Motion.NONE  # the law has nothing to give
+        step = self._last_word(step, motion, dt)
+        self._feedback.asked.add(step.rates, now)
+        if self.guard.fault:
+            return _with(step, verdict=Verdict.FAULT, fault=self.guard.fault)
+        turn = heading_rate(self.frame, w_c * step.scale)
+        if turn is not None:
+            self._theta_e = wrap(step.polar.theta_e + turn * dt)
+        return step if finite else _with(step, verdict=weightier(Verdict.NOT_FINITE, step.verdict))
+
+    def ramp(self, dt: float) -> Step:
+        """Return the next rates on the way to zero: without state, command or law. For the end of every run."""
+        return self._written(self._still(self._believed), self.guard.ramp(dt))
+
+    def _believe(self, state: RobotState | None, now: float) -> RobotState:
+        """Return `state`, or the last one that was believed, with the fault latched, where it cannot be."""
+        if state is None:
+            state = self._believed
+        positions = (complex(state.x_b, state.y_b), state.theta_b, *state.theta)
+        wrong = self._feedback.check(state.t, positions, (state.v_b, state.w_b, *state.dtheta), now)
+        if wrong:
+            self.guard.latch(wrong)
+        elif state.t >= self._feedback.stamp:
+            self._believed = state
+        return self._believed
+
+    def _decide(self, state: RobotState, v_c: float, w_c: float, dt: float) -> Step:
+        """Return what law, residual, limits and arm make of a command."""
+        polar = self.locate(state)
+        l, psi, mount, closes = polar.l, polar.psi, self._mount, self.law.closes_residual
+        u_r, u_t = self.commanded(v_c, w_c, l, psi, state.theta_b, polar.theta_e)
+        split = self._split(state, l, psi, u_r, u_t)
+        full, verdict = split.scale, split.verdict
+        if verdict is Verdict.MOVING and full < 1.0:
+            verdict = Verdict.BESIDE
         v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
-        if self.limited:
-            v_b, w_b, v_m, w_m, part, why = self._limit(state, split, dt)
-            scale *= part
-            if why is not Verdict.MOVING:
-                verdict = why
-        if self.law.closes_residual:
-            # The base may not do what it is asked for: what it did differently it will go on doing.
-            slip_v = state.v_b - self._asked[0]
-            slip_w = state.w_b - self._asked[1]
-            if slip_v != 0.0 or slip_w != 0.0 or scale != split.scale:
-                part = scale / split.scale if split.scale > 0.0 else 0.0
-                full = split.scale
-                v_m, w_m = arm_residual(
-                    l, psi, u_r * full * part, u_t * full * part, v_b + slip_v, w_b + slip_w, self._mount
-                )
-        own = split.dtheta
-        if own is not None and split.scale > 0.0:
-            own = tuple(rate * scale / split.scale for rate in own)
+
+        # The base may not do what it was asked for: what it did differently it will go on doing.
+        slip_v = slip_w = 0.0
+        if closes:
+            then = self._feedback.asked.in_force
+            slip_v, slip_w = state.v_b - then[0], state.w_b - then[1]
+        open_ = closes and (slip_v != 0.0 or slip_w != 0.0 or self.model.base.lag > 0.0)
+        if open_:
+            v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, v_b + slip_v, w_b + slip_w, mount)
+        apart = arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount) if open_ else (0.0, 0.0)
+
+        scale, why = self._limit(state, (v_b, w_b, v_m, w_m), split.dtheta, apart, dt)
+        if why is not Verdict.MOVING:
+            verdict = why
+        v_b, w_b = self._base(v_b * scale, w_b * scale, dt)
+        if open_ or (closes and scale != 1.0):
+            k = full * scale
+            v_m, w_m = arm_residual(l, psi, u_r * k, u_t * k, v_b + slip_v, w_b + slip_w, mount)
+        else:
+            v_m, w_m = v_m * scale, w_m * scale
+        own = split.dtheta if split.dtheta is None else tuple(rate * scale for rate in split.dtheta)
         dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, own, dt)
         if why is not Verdict.MOVING:
             verdict = why
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, split.dtheta)
+        return Step(state, polar, u_r, u_t, applied, dtheta, full * scale, verdict)
 
-        self._asked = (v_b, w_b, *dtheta)
-        turn = heading_rate(self.frame, w_c * scale)
-        if turn is not None:
-            self._theta_e = wrap(polar.theta_e + turn * dt)
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale, split.verdict, split.dtheta)
-        return Step(polar, u_r, u_t, applied, dtheta, scale, verdict)
+    def _split(self, state: RobotState, l: float, psi: float, u_r: float, u_t: float) -> Split:
+        """Return the law's answer; raises Unusable where it is none."""
+        lag = self.model.base.lag
+        if self._joint_law is not None:
+            split = self._joint_law.split_joints(state.theta, u_r, u_t)
+        elif lag > 0.0 and self.law.closes_residual:
+            split = self.law.split(*lead(l, psi, u_r, u_t, state.v_b, state.w_b, lag, self._mount))
+        else:
+            split = self.law.split(l, psi, u_r, u_t)
+        check_split(split)
+        return split
 
-    def _limit(self, state: RobotState, split: Split, dt: float) -> tuple[float, float, float, float, float, Verdict]:
-        """Return the four rates scaled alike until no limit is passed, the scale, and why."""
+    def _limit(
+        self,
+        state: RobotState,
+        rates: tuple[float, float, float, float],
+        own: tuple[float, ...] | None,
+        apart: tuple[float, float],
+        dt: float,
+    ) -> tuple[float, Verdict]:
+        """Return the scale of the command at which no limit is passed, and why.
+
+        rates: v_b, w_b, v_m, w_m at scale 1; own: joint rates that the law has decided itself, else they follow from
+        v_m, w_m; apart: the part of v_m, w_m that is owed to the base whatever the command is.
+        """
         arm, base = self.model.arm, self.model.base
-        v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
-        dtheta_1, dtheta_2 = split.dtheta or polar_to_joint_rates(state.theta[1], v_m, w_m, *arm.links, arm.elbow)[:2]
-        joints = fastest_joints(arm, state.theta, (dtheta_1, dtheta_2), dt)
-        wanted = (v_b, w_b, dtheta_1, dtheta_2)
+        theta_2 = state.theta[1]
+        joints = own or polar_to_joint_rates(theta_2, rates[2], rates[3], *arm.links, arm.elbow)[:2]
+        owed = REST[2:]
+        if apart != (0.0, 0.0):
+            owed = polar_to_joint_rates(theta_2, *apart, *arm.links, arm.elbow)[:2]
+        fastest = fastest_joints(arm, state.theta, joints, dt)
+        asked = (rates[0], rates[1], *(rate - mine for rate, mine in zip(joints, owed, strict=True)))
         change = (base.dv_max * dt, base.dw_max * dt, *(rate * dt for rate in arm.ddtheta_max))
-        scale, verdict = feasible_scale(wanted, self._asked, (base.v_max, base.w_max, *joints), change)
+        scale, verdict = feasible_scale(
+            asked, self.guard.written, (base.v_max, base.w_max, *fastest), change, (0.0, 0.0, *owed)
+        )
         if verdict is Verdict.SPEED and any(
             abs(rate) * scale >= most * 0.999 and most < arm.dtheta_max[k] * 0.999
-            for k, (rate, most) in enumerate(zip(wanted[2:], joints, strict=True))
+            for k, (rate, most) in enumerate(zip(joints, fastest, strict=True))
         ):
             verdict = Verdict.JOINT_LIMIT
+        return scale, verdict
+
+    def _base(self, v_b: float, w_b: float, dt: float) -> tuple[float, float]:
+        """Return the base's rates, held to its accelerations."""
+        base = self.model.base
         return (
-            clamp_change(v_b * scale, self._asked[0], change[0]),
-            clamp_change(w_b * scale, self._asked[1], change[1]),
-            v_m * scale,
-            w_m * scale,
-            scale,
-            verdict,
+            clamp_change(v_b, self.guard.written[0], base.dv_max * dt),
+            clamp_change(w_b, self.guard.written[1], base.dw_max * dt),
         )
 
     def _joints(
@@ -181,12 +259,38 @@ class HandController:
         else:
             one, two, damped = polar_to_joint_rates(state.theta[1], v_m, w_m, *arm.links, arm.elbow)
             verdict = Verdict.SINGULAR if damped else Verdict.MOVING
-        if not self.limited:
-            return (one, two), v_m, w_m, verdict
-        steps = [rate * dt for rate in arm.ddtheta_max]
-        one = clamp_change(one, self._asked[2], steps[0])
-        two = clamp_change(two, self._asked[3], steps[1])
-        most = fastest_joints(arm, state.theta, (one, two), dt)
-        one, two = (max(-top, min(top, rate)) for rate, top in zip((one, two), most, strict=True))
-        v_m, w_m = polar_rates(state.theta[1], one, two, *arm.links)  # what the joints really give
+            if damped and (v_m > 0.0) == (cos(state.theta[1]) > 0.0):  # straight and farther out, or folded and in
+                verdict = Verdict.OUT_OF_REACH
+        bounded = self._bounded(state, (one, two), dt)
+        if bounded is not None:
+            one, two = bounded
+            v_m, w_m = polar_rates(state.theta[1], one, two, *arm.links)  # what the joints really give
         return (one, two), v_m, w_m, verdict
+
+    def _bounded(self, state: RobotState, dtheta: tuple[float, float], dt: float) -> tuple[float, float] | None:
+        """Return joint rates held to their limits: to what still stops in time, then to the accelerations."""
+        most = fastest_joints(self.model.arm, state.theta, dtheta, dt)
+        one, two = (
+            clamp_change(max(-top, min(top, rate)), was, change * dt)
+            for rate, top, was, change in zip(
+                dtheta, most, self.guard.written[2:], self.model.arm.ddtheta_max, strict=True
+            )
+        )
+        return one, two
+
+    def _last_word(self, step: Step, motion: Motion, dt: float) -> Step:
+        """Return `step` with the rates that the guard writes."""
+        rates = step.rates
+        written = self.guard.write(rates, motion, dt)
+        return step if written == rates else self._written(step, written)
+
+    def _written(self, step: Step, rates: tuple[float, ...]) -> Step:
+        """Return `step` with other rates."""
+        v_b, w_b, *dtheta = rates
+        v_m, w_m = polar_rates(step.state.theta[1], dtheta[0], dtheta[1], *self.model.arm.links)
+        split = _with(step.split, v_b=v_b, w_b=w_b, v_m=v_m, w_m=w_m)
+        return _with(step, split=split, dtheta=tuple(dtheta))
+
+    def _still(self, state: RobotState) -> Step:
+        """Return a step in which nothing moves."""
+        return Step(state, self.locate(state), 0.0, 0.0, STILL, REST[2:], 0.0, Verdict.MOVING)

@@ -18,6 +18,17 @@ from collections.abc import Iterable
 
 LONGEST_NAME = 60
 """A name longer than this is cut before it is compared and shown."""
+LONGEST_TOLD = 160
+"""What an exception of somebody else's says is cut after this many characters."""
+
+
+def told(error: BaseException) -> str:
+    """Return what any exception says, its type first, as one line of at most LONGEST_TOLD characters."""
+    try:
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+    except Exception:  # its own text cannot be had
+        text = type(error).__name__
+    return text if len(text) <= LONGEST_TOLD else f"{text[:LONGEST_TOLD]}..."
 
 
 class OverreachError(Exception):

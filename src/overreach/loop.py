@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 from collections.abc import Callable
 from math import inf
@@ -10,8 +11,8 @@ from typing import final
 from overreach import __version__
 from overreach.arm.planar import hand_in_world
 from overreach.clock import Clock
-from overreach.control import HandController, Step
-from overreach.errors import OverreachError, SetupError
+from overreach.control import HandController
+from overreach.errors import OverreachError, SetupError, told
 from overreach.gate.gate import STALE_S, Gate, Gated
 from overreach.law.blend import blend_from
 from overreach.law.laws import Law
@@ -38,15 +39,17 @@ from overreach.model.planar import PlanarRobot
 from overreach.plugs import LAWS, load_law, loaded, names
 from overreach.robots.kinematic import KinematicRobot
 from overreach.timing import Lateness
-from overreach.types import RobotState, Verdict
+from overreach.types import Motion, RobotState, Step, Verdict, weightier
 
 STATE_PERIOD_S = 1.0 / 60.0
 """A state is sent when a stick was accepted, and at the latest after this [s]."""
+SLOW_MOST = 3
+"""Decisions in a row that may take longer than a period."""
 
 
 @final
 class Loop:
-    """Reads the robot and the link, decides, writes. `tick` raises nothing; `run` keeps the time."""
+    """Reads robot and link, decides, writes. `tick` lets no exception of a law or robot out; `run` keeps time."""
 
     def __init__(
         self, model: PlanarRobot, robot: KinematicRobot, link: RobotEnd, clock: Clock, rate: float = 200.0
@@ -61,16 +64,22 @@ class Loop:
         self._clock = clock
         space = model.workspace
         self.settings = Settings(l_min=space.l_min, l_max=space.l_max, psi_min=space.psi_min, psi_max=space.psi_max)
-        self.controller = HandController(model, self._law(self.settings), self.settings.frame)
+        self.controller = HandController(
+            model, self._law(self.settings), self.settings.frame, ramp_s=self.gate.limits.ramp_s
+        )
         self._defaults = self.settings
         self._revision = 0
         self._tick = 0
         self._sent_at = -inf
         self._told = (0.0, 0.0, 0.0)
         self._told_at = -inf
+        self._slow = 0
 
     def run(self, running: Callable[[], bool]) -> None:
-        """Tick at `rate` while `running()`. An overrun is counted and the missed ticks are left out."""
+        """Tick at `rate` while `running()`. An overrun is counted and the missed ticks are left out.
+
+        However it ends, by `running` or by an exception, the robot ramps to zero first.
+        """
         period = 1.0 / self.rate
         deadline = self._clock.now() + period
         try:
@@ -85,21 +94,62 @@ class Loop:
                     self.overruns += missed
                     deadline += missed * period
         finally:
-            self._robot.stop(self._clock.now())
+            self._come_to_rest(period)
 
     def tick(self, now: float, dt: float) -> None:
-        """Do one period: robot and link in, gate, law and arm, robot and link out."""
+        """Do one period: robot and link in, gate, law, arm and guard, robot and link out."""
         self._serve(now)
-        state = self._robot.read(now)
+        state = self._read(now)
         stick = self._link.newest_stick()
         refusal = self.gate.accept(stick, now) if stick else None
         gated = self.gate.tick(now, dt)
-        step = self.controller.step(state, gated.v_c, gated.w_c, dt)
-        self._robot.write(step.twist, step.dtheta, now)
+        begun = self._clock.now()
+        step = self.controller.step(state, gated.v_c, gated.w_c, dt, now, gated.motion)
+        self._watch(self._clock.now() - begun, dt)
+        self._write(step, now)
+        if self.controller.guard.fault:
+            self.gate.latch.fail(self.controller.guard.fault)
         self._tick += 1
         if (stick and not refusal) or now - self._sent_at >= STATE_PERIOD_S:
-            self._sent_at = now
-            self._link.publish(self._report(now, state, gated, step))
+            self._publish(now, gated, step)
+
+    def _read(self, now: float) -> RobotState | None:
+        """Return what the robot reports; None, with the fault latched, where it raises."""
+        try:
+            return self._robot.read(now)
+        except Exception as error:  # a driver may raise anything
+            self.controller.guard.latch(f"The robot could not be read: {told(error)}.")
+            return None
+
+    def _write(self, step: Step, now: float) -> None:
+        try:
+            self._robot.write(step.twist, step.dtheta, now)
+        except Exception as error:  # as above; what is written next is on the way to zero
+            self.controller.guard.latch(f"The robot could not be written to: {told(error)}.")
+
+    def _watch(self, took: float, dt: float) -> None:
+        """Latch a fault where decisions take longer than the period `dt` [s], SLOW_MOST times in a row."""
+        self._slow = self._slow + 1 if took > dt else 0
+        if self._slow >= SLOW_MOST:
+            self._slow = 0
+            law = self.controller.law.name
+            self.controller.guard.latch(f"The law {law!r} takes {took * 1e3:.0f} ms; a period has {dt * 1e3:g} ms.")
+
+    def _come_to_rest(self, dt: float) -> None:
+        """Ramp to zero by the guard alone, then stop. Whoever watches is told; nobody can hold it up."""
+        guard = self.controller.guard
+        try:
+            deadline = self._clock.now()
+            while any(guard.written):
+                deadline += dt
+                self._clock.sleep_until(deadline)
+                step = self.controller.ramp(dt)
+                self._write(step, deadline)
+                with contextlib.suppress(Exception):
+                    gated = Gated(0.0, 0.0, 1.0, Motion.NONE, Verdict.ENDING)
+                    self._publish(deadline, gated, step)
+        finally:
+            self._robot.stop(self._clock.now())
 
     def _serve(self, now: float) -> None:
         """Carry out what was asked for since the last tick."""
@@ -111,8 +161,8 @@ class Loop:
             except OverreachError as error:
                 answer(Refused(str(error)))
             except Exception as error:  # a law that is a plug-in may raise anything: the loop goes on
-                self.gate.latch.stop()
-                answer(Refused(f"Stopped: {type(error).__name__} in the robot side: {error}"))
+                self.gate.latch.fail(f"The robot side met {told(error)}.")
+                answer(Refused(f"Fault: the robot side met {told(error)}."))
 
     def _carry_out(self, request: Request, now: float) -> Answer:
         latch = self.gate.latch
@@ -121,14 +171,15 @@ class Loop:
                 latch.stop()
             case Reset():
                 latch.reset()
+                self.controller.reset()
             case Disarm(operator):
                 if latch.armed and operator != latch.operator:
                     return Refused("Another operator has armed the robot. Stop is always possible.")
                 latch.disarm()
             case Arm(operator, grip):
                 match self.gate.arm(operator, grip, now):
-                    case Verdict.STOPPED:
-                        return Refused("Stopped: press Reset first.")
+                    case Verdict.STOPPED | Verdict.FAULT as why:
+                        return Refused(f"{why.word}: press Reset first.")
                     case Verdict.OTHER_OPERATOR:
                         return Refused("Another operator is driving. Stop is always possible.")
             case Restart():
@@ -180,17 +231,23 @@ class Loop:
             footprint=base.footprint,
             v_max=limits.v_c,
             w_max=limits.w_c,
-            stop_time=STALE_S + 1.0 / self.rate + max(limits.v_c / limits.dv_c, limits.w_c / limits.dw_c),
+            stop_time=STALE_S + 1.0 / self.rate + self.controller.guard.stop_s,
             simulated=True,
             settings=self.settings,
             defaults=self._defaults,
             revision=self._revision,
         )
 
-    def _report(self, now: float, state: RobotState, gated: Gated, step: Step) -> State:
-        verdict = gated.verdict
-        if verdict in (Verdict.MOVING, Verdict.ACCELERATION) and step.verdict is not Verdict.MOVING:
-            verdict = step.verdict
+    def _publish(self, now: float, gated: Gated, step: Step) -> None:
+        self._sent_at = now
+        self._link.publish(self._report(now, gated, step))
+
+    def _report(self, now: float, gated: Gated, step: Step) -> State:
+        verdict = weightier(gated.verdict, step.verdict)
+        latch, state = self.gate.latch, step.state
+        sentence = verdict.sentence
+        if verdict is Verdict.FAULT:
+            sentence = f"{step.fault or latch.fault} {sentence}"
         if now - self._told_at >= 1.0:
             self._told = (self.late.percentile(0.5), self.late.percentile(0.99), self.late.most * 1e6)
             self._told_at = now
@@ -201,10 +258,10 @@ class Loop:
         )
         blend = self.controller.law.blend
         return State(
-            now, self._tick, self.gate.latch.operator, self.gate.seq, verdict.value, verdict.word, verdict.sentence,
-            gated.scale * step.scale, self.gate.latch.armed, self.gate.latch.stopped, gated.v_c, gated.w_c,
+            now, self._tick, latch.operator, self.gate.seq, verdict.value, verdict.word, sentence,
+            gated.scale * step.scale, latch.armed, latch.latched, gated.v_c, gated.w_c,
             polar.l, polar.psi, polar.theta_e, split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m,
             state.x_b, state.y_b, state.theta_b, state.theta[0], state.theta[1], x_e, y_e,
             *self._told, self.overruns, self.gate.refused + self._link.malformed, self._revision,
-            blend.width_l, blend.width_psi,
+            blend.width_l, blend.width_psi, verdict.look,
         )  # fmt: skip

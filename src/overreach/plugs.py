@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import difflib
 import inspect
 import sys
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import Any, get_type_hints
 
-from overreach.errors import UnknownNameError
+from overreach.errors import SetupError, UnknownNameError
 from overreach.law.blend import Blend
 from overreach.law.laws import Law
 from overreach.law.workspace import Mount, Workspace
@@ -18,6 +19,7 @@ from overreach.model.planar import PlanarRobot
 LAWS = "overreach.laws"
 """Entry points to makers of a Law. A maker names those of these it needs, each with a default:
 workspace: Workspace, blend: Blend, mount: Mount, robot: PlanarRobot."""
+GIVEN = ("workspace", "blend", "mount", "robot")
 ROBOTS = "overreach.robots"
 """Entry points to makers: () -> PlanarRobot."""
 
@@ -42,8 +44,22 @@ def _load(group: str, kind: str, name: str) -> Callable[..., Any]:
 
 
 def takes(name: str) -> frozenset[str]:
-    """Return what the law called `name` is made from: some of workspace, blend, mount, robot."""
-    return frozenset(inspect.signature(_load(LAWS, "law", name)).parameters)
+    """Return the parameters of the maker of the law called `name`: some of workspace, blend, mount, robot; its own.
+
+    Raises SetupError for one that is nearly one of those, or has no default: it would silently never be given.
+    """
+    parameters = inspect.signature(_load(LAWS, "law", name)).parameters
+    for parameter in parameters.values():
+        if parameter.name in GIVEN or parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            continue
+        near = difflib.get_close_matches(parameter.name, GIVEN, n=1)
+        if near or parameter.default is parameter.empty:
+            hint = f" Did you mean {near[0]!r}?" if near else ""
+            raise SetupError(
+                f"the maker of the law {name!r} has a parameter {parameter.name!r}, which nothing gives it.{hint} "
+                f"Given are: {', '.join(GIVEN)}; one of its own needs a default."
+            )
+    return frozenset(parameters)
 
 
 def loaded(name: str) -> bool:
@@ -65,6 +81,9 @@ def load_law(
     """
     given = {"workspace": workspace, "blend": blend, "mount": mount, "robot": robot}
     law: Law = _load(LAWS, "law", name)(**{key: given[key] for key in takes(name) if given.get(key) is not None})
+    missing = [part for part in (*get_type_hints(Law), "split") if not hasattr(law, part)]
+    if missing:
+        raise SetupError(f"the law {name!r} lacks {', '.join(missing)}: see overreach.testing.law.check_law")
     return law
 
 

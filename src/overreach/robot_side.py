@@ -43,9 +43,9 @@ def check_rate(rate: float) -> None:
 
 
 def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -> None:
-    """Run the robot side until SIGINT or SIGTERM or, with `parent`, until that process has ended.
+    """Run the robot side until SIGINT, SIGTERM or SIGHUP or, with `parent`, until that process has ended.
 
-    Raises SetupError or LinkError before anything moves.
+    Each of these ramps the robot to zero. Raises SetupError or LinkError before anything moves.
     """
     check_rate(rate)
     endpoint = check_endpoint(listen)
@@ -57,8 +57,9 @@ def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -
         nonlocal ended
         ended = True
 
-    signal.signal(signal.SIGINT, end)
-    signal.signal(signal.SIGTERM, end)
+    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if each is not signal.SIGHUP or signal.getsignal(each) is not signal.SIG_IGN:  # as `nohup` leaves it
+            signal.signal(each, end)
     link = RobotEnd(endpoint)
     try:
         loop = Loop(model, KinematicRobot(model, now=clock.now()), link, clock, rate)

@@ -8,6 +8,7 @@ EE). Records are frozen and slotted; symbols are those of Kwon et al., Appl. Sci
 from __future__ import annotations
 
 import enum
+import math
 
 import msgspec
 
@@ -25,37 +26,84 @@ class Frame(enum.StrEnum):
     WORLD = "world"
 
 
+class Motion(enum.Enum):
+    """What the gate says of motion in one tick.
+
+    ALLOWED: the operator moves the hand; RAMPING: nobody does, and the command is on its way to zero;
+    NONE: the command is zero, and zero is what is written.
+    """
+
+    ALLOWED = enum.auto()
+    RAMPING = enum.auto()
+    NONE = enum.auto()
+
+
 class Verdict(enum.StrEnum):
-    """What became of a command in one tick, weightiest first: value, a word for a label, what to do or know."""
+    """What became of a command in one tick, weightiest first: the one table of them.
+
+    Each has a value, a word for a label, a sentence (what to do or know), and a look for the page: stop, down, warn,
+    ready or go. `severity` counts down the table: 0 is the weightiest.
+    """
 
     word: str
     sentence: str
+    look: str
+    severity: int
 
-    def __new__(cls, value: str, word: str, sentence: str) -> Verdict:
+    def __new__(cls, value: str, word: str, sentence: str, look: str) -> Verdict:
         """Make a member whose value is `value`."""
         member = str.__new__(cls, value)
         member._value_ = value
         member.word = word
         member.sentence = sentence
+        member.look = look
+        member.severity = len(cls.__members__)
         return member
 
-    STOPPED = "stopped", "Stopped", "Press Reset, then Arm."
-    DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad."
-    LOST = "lost", "Link lost", "No command for 1 s. Let go and press again."
-    REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again."
-    STALE = "stale", "Link slow", "No command for 200 ms: slowing down."
-    NOT_FINITE = "not_finite", "Refused", "A command held a value that is not finite."
-    OTHER_OPERATOR = "other_operator", "Refused", "Another operator has armed the robot."
-    OUT_OF_ORDER = "out_of_order", "Refused", "An old or repeated command came."
-    NO_SOLUTION = "no_solution", "No solution", "The law's solver found no answer: the robot is to stand still."
-    RELEASED = "released", "Ready", "Hold the pad to move the hand."
-    JOINT_LIMIT = "joint_limit", "Scaled", "A joint is near its limit: the whole command is scaled."
-    OUT_OF_REACH = "out_of_reach", "Out of reach", "The arm is at the end of its reach."
-    SINGULAR = "singular", "Damped", "The arm is almost straight or folded: it gives way there."
-    BESIDE = "beside", "Scaled", "The hand is beside the base, where driving cannot help it."
-    SPEED = "speed", "Scaled", "Speed limit: the whole command is scaled."
-    ACCELERATION = "acceleration", "Moving", "Acceleration limit: the whole command is ramped."
-    MOVING = "moving", "Moving", "The hand moves as commanded."
+    ENDING = "ending", "Ending", "The robot side was told to end: the robot comes to rest.", "stop"
+    FAULT = "fault", "Fault", "Press Reset, then Arm.", "stop"
+    STOPPED = "stopped", "Stopped", "Press Reset, then Arm.", "stop"
+    DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad.", "down"
+    LOST = "lost", "Link lost", "No command for 1 s. Let go and press again.", "warn"
+    REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again.", "warn"
+    STALE = "stale", "Link slow", "No command for 200 ms: slowing down.", "warn"
+    NOT_FINITE = "not_finite", "Refused", "A command held a value that is not finite.", "warn"
+    OTHER_OPERATOR = "other_operator", "Refused", "Another operator has armed the robot.", "warn"
+    OUT_OF_ORDER = "out_of_order", "Refused", "An old or repeated command came.", "warn"
+    NO_SOLUTION = "no_solution", "No solution", "The law's solver found no answer: the robot is to stand still.", "warn"
+    RELEASED = "released", "Ready", "Hold the pad to move the hand.", "ready"
+    JOINT_LIMIT = "joint_limit", "Scaled", "A joint is near its limit: the whole command is scaled.", "warn"
+    OUT_OF_REACH = "out_of_reach", "Out of reach", "The arm is at the end of its reach.", "warn"
+    SINGULAR = "singular", "Damped", "The arm is almost straight or folded: it gives way there.", "warn"
+    BESIDE = "beside", "Scaled", "The hand is beside the base, where driving cannot help it.", "warn"
+    SPEED = "speed", "Scaled", "Speed limit: the whole command is scaled.", "warn"
+    ACCELERATION = "acceleration", "Moving", "Acceleration limit: the whole command is ramped.", "go"
+    MOVING = "moving", "Moving", "The hand moves as commanded.", "go"
+
+
+def weightier(one: Verdict, other: Verdict) -> Verdict:
+    """Return which of two verdicts is to be told: the one that stands higher in the table."""
+    return one if one.severity <= other.severity else other
+
+
+class Channel(Record, frozen=True):
+    """One rate of a robot that is written and measured: of the base, or of a joint.
+
+    name: its symbol; moves: the name of the position that it moves; unit: of that position, "m" or "rad", so that rates
+    are in unit/s and changes of rates in unit/s^2; rate_max, change_max: greatest |rate| and |d rate/dt|; lower, upper:
+    limits of the position; resolution: smallest change of it that the robot reports; dead_band: a rate below which the
+    robot may stand still.
+    """
+
+    name: str
+    moves: str
+    unit: str
+    rate_max: float
+    change_max: float
+    lower: float = -math.inf
+    upper: float = math.inf
+    resolution: float = 0.005
+    dead_band: float = 0.0
 
 
 class Command(Record, frozen=True):
@@ -139,3 +187,32 @@ class RobotState(Record, frozen=True):
     w_b: float
     theta: tuple[float, ...]
     dtheta: tuple[float, ...]
+
+
+class Step(Record, frozen=True):
+    """What one step decided.
+
+    state: the newest that is believed of the robot; polar: where the hand is; u_r, u_t: its commanded velocity [m/s];
+    split: the shares, with the rates as they are written; dtheta: joint rates [rad/s]; scale: part of the command that
+    is carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty.
+    """
+
+    state: RobotState
+    polar: PolarState
+    u_r: float
+    u_t: float
+    split: Split
+    dtheta: tuple[float, ...]
+    scale: float
+    verdict: Verdict
+    fault: str = ""
+
+    @property
+    def twist(self) -> BaseTwist:
+        """The base twist that is written."""
+        return BaseTwist(self.split.v_b, self.split.w_b)
+
+    @property
+    def rates(self) -> tuple[float, ...]:
+        """All that is written, channel by channel."""
+        return (self.split.v_b, self.split.w_b, *self.dtheta)

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from scipy.special import wrightomega
 
 from overreach.arm.planar import hand_in_world, inverse
-from overreach.control import HandController
+from overreach.experiments.law_alone import LawAlone
 from overreach.experiments.run import Run, law_of, simulate, steps
 from overreach.experiments.scenario import parse_scenario
 from overreach.law.blend import tanh
@@ -105,7 +105,7 @@ def test_the_hand_moves_as_commanded_in_the_world(centred: bool) -> None:
 def check_one_step(l: float, psi: float, theta_b: float, turned: float, v_c: float, w_c: float, mount: Mount) -> None:
     dt = 1e-3
     model = PlanarRobot(mount=mount)
-    controller = HandController(model, exact(Workspace(), tanh(), mount), Frame.HAND, limited=False, whole_steps=True)
+    controller = LawAlone(model, exact(Workspace(), tanh(), mount), Frame.HAND, whole_steps=True)
     theta = inverse(l, psi, 0.5, 0.5, 1)
     state = RobotState(0.0, 0.3, -0.2, theta_b, 0.0, 0.0, theta, (0.0, 0.0))
     heading = controller.locate(state).theta_e + turned
@@ -242,12 +242,12 @@ def test_reported_error_is_what_the_positions_say() -> None:
 def test_arm_makes_up_for_a_base_that_does_otherwise() -> None:
     """If the base was slower than asked, the arm's next rates make the EE exact for the base as it goes on."""
     model = PlanarRobot()
-    controller = HandController(model, exact(), limited=False)
+    controller = LawAlone(model, exact())
     theta = inverse(0.9, 0.3, 0.5, 0.5, 1)
     state = RobotState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta, (0.0, 0.0))
     first = controller.step(state, V, 0.0, 0.005)
     slip = BaseTwist(-0.1, 0.05)
-    real = RobotState(0.0, 0.0, 0.0, 0.0, first.split.v_b + slip.v_b, first.split.w_b + slip.w_b, theta, first.dtheta)
+    real = RobotState(0.005, 0.0, 0.0, 0.0, first.split.v_b + slip.v_b, first.split.w_b + slip.w_b, theta, first.dtheta)
     second = controller.step(real, V, 0.0, 0.005)
     twist = BaseTwist(second.split.v_b + slip.v_b, second.split.w_b + slip.w_b)
     h = 1e-6

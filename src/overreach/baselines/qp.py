@@ -7,7 +7,8 @@ from typing import Any, final
 
 from overreach.arm.planar import L_LEAST, forward, inverse, jacobian
 from overreach.baselines.common import NO_SOLUTION, shared
-from overreach.baselines.solver import Array, solver
+from overreach.baselines.settings import check_settings
+from overreach.baselines.solver import SOLVERS, Array, solver
 from overreach.errors import SetupError
 from overreach.extras import require
 from overreach.law.blend import step
@@ -47,6 +48,8 @@ class PaperQP:
         self.blend = step()
         self.mount = mount
         self.solver = solver_name
+        if solver_name in SOLVERS:
+            check_settings(solver_name, settings, also=("solver", "damping"))
         self._solve = solver(solver_name, **settings)
         self._arm = robot.arm
         base = robot.base
@@ -120,6 +123,7 @@ def qp(
 ) -> PaperQP:
     """Baseline: the paper's quadratic program in its model (3), damped, with the speed limits of base and joints.
 
-    `settings` go to the solver. Raises MissingExtraError without the extra `qp`.
+    `settings` go to the solver. Raises SetupError for one it does not have or cannot use, MissingExtraError without the
+    extra `qp`.
     """
     return PaperQP(workspace or Workspace(), mount or Mount(), robot or PlanarRobot(), solver, damping, **settings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from overreach.baselines.settings import SPARSE, check_settings
 from overreach.errors import UnknownNameError
 from overreach.extras import require
 
@@ -20,8 +21,6 @@ SETTINGS: dict[str, dict[str, float]] = {
     "clarabel": {"tol_gap_abs": 1e-11, "tol_gap_rel": 1e-11, "tol_feas": 1e-11},
 }
 """Tolerances with which all agree with quadprog to better than 1e-4 (tested)."""
-SPARSE = ("osqp", "clarabel")
-"""Solvers that take sparse matrices only."""
 DIRECT = "daqp-direct"
 """daqp without qpsolvers around it."""
 MODEL = "daqp-model"
@@ -42,10 +41,12 @@ class Solve(Protocol):
 def solver(name: str, **settings: float) -> Solve:
     """Return the solver called `name`, with its own settings changed by `settings`.
 
-    Raises UnknownNameError with the valid names, or MissingExtraError without the extra `qp`.
+    Raises UnknownNameError with the valid names, SetupError for a value it cannot use, or MissingExtraError without the
+    extra `qp`.
     """
     if name not in SOLVERS:
         raise UnknownNameError("QP solver", name, SOLVERS)
+    check_settings(name, settings)
     if name == DIRECT:
         return _direct(settings)
     if name == MODEL:

@@ -10,7 +10,8 @@ from overreach.arm.step import planar_step, polar_step
 from overreach.baselines.holistic import holistic
 from overreach.baselines.qp import PaperQP, qp
 from overreach.baselines.separate import separate
-from overreach.baselines.solver import DIRECT, SOLVERS, SPARSE
+from overreach.baselines.settings import SPARSE
+from overreach.baselines.solver import DIRECT, SOLVERS
 from overreach.baselines.weighted import weighted
 from overreach.bench.measure import Candidate
 from overreach.control import HandController

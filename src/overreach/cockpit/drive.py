@@ -61,13 +61,15 @@ def has_browser() -> bool:
     return True
 
 
-def _exit_on_sigterm() -> None:
-    """Make SIGTERM unwind the stack, so that both halves are always closed."""
+def _exit_on_signals() -> None:
+    """Make SIGTERM and SIGHUP unwind the stack, so that both halves are always closed."""
 
-    def leave(_signal: int, _frame: FrameType | None) -> None:
-        raise SystemExit(143)
+    def leave(number: int, _frame: FrameType | None) -> None:
+        raise SystemExit(128 + number)
 
     signal.signal(signal.SIGTERM, leave)
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as `nohup` leaves it
+        signal.signal(signal.SIGHUP, leave)
 
 
 @contextmanager
@@ -96,7 +98,7 @@ def run_drive(robot: str, host: str, port: int | None, rate: float, browser: boo
 
     load_robot(robot)
     check_rate(rate)
-    _exit_on_sigterm()
+    _exit_on_signals()
     with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate) as (endpoint, process):
         _operate(endpoint, page, host, browser, lambda: process.poll() is not None)
         if process.poll() is not None:
@@ -106,7 +108,7 @@ def run_drive(robot: str, host: str, port: int | None, rate: float, browser: boo
 def run_cockpit(connect: str, host: str, port: int | None, browser: bool) -> None:
     """Run the operator side alone, for a robot side that is already there."""
     endpoint = check_endpoint(connect)
-    _exit_on_sigterm()
+    _exit_on_signals()
     with contextlib.closing(bind_page(host, port)) as page:
         _operate(endpoint, page, host, browser, lambda: False)
 

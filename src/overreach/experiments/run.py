@@ -7,7 +7,8 @@ from math import cos
 from typing import NamedTuple
 
 from overreach.arm.planar import forward, hand_in_world, polar_rates, wrap
-from overreach.control import HandController, Step
+from overreach.control import HandController
+from overreach.experiments.law_alone import LawAlone
 from overreach.experiments.scenario import Scenario, load_scenario
 from overreach.experiments.summary import Summary, summarise
 from overreach.gate.limits import limit_speed, slew
@@ -15,7 +16,7 @@ from overreach.law.authority import ee_velocity
 from overreach.law.laws import Law
 from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import Verdict
+from overreach.types import Step, Verdict
 
 
 class Row(NamedTuple):
@@ -68,13 +69,11 @@ def law_of(scenario: Scenario, name: str) -> Law:
 def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, float], Step]]:
     """Yield (row, EE velocity error (radial, tangential) [m/s], what was decided) step by step, in constant memory."""
     model = scenario.model
-    controller = HandController(
-        model,
-        law,
-        scenario.frame,
-        limited=scenario.limits is not None,
-        whole_steps=True,
-    )
+    limits = scenario.limits
+    if limits is None:
+        controller: HandController = LawAlone(model, law, scenario.frame, whole_steps=True)
+    else:
+        controller = HandController(model, law, scenario.frame, whole_steps=True, ramp_s=limits.ramp_s)
     robot = KinematicRobot(model, scenario.imperfection, scenario.l, scenario.psi)
     mount = (model.mount.s_x, model.mount.s_y, model.mount.yaw)
     dt = scenario.dt
@@ -82,12 +81,12 @@ def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, floa
     for k in range(scenario.steps):
         t = k * dt
         wish = scenario.command_at(t)
-        if scenario.limits is None:
+        if limits is None:
             v_c, w_c = wish.v_c, wish.w_c
         else:
-            goal_v, goal_w, _ = limit_speed(wish.v_c, wish.w_c, scenario.limits)
-            v_c, w_c, _ = slew((v_c, w_c), (goal_v, goal_w), scenario.limits, dt)
-        done = controller.step(robot.read(t), v_c, w_c, dt)
+            goal_v, goal_w, _ = limit_speed(wish.v_c, wish.w_c, limits)
+            v_c, w_c, _ = slew((v_c, w_c), (goal_v, goal_w), limits, dt)
+        done = controller.step(robot.read(t), v_c, w_c, dt, t)
         robot.write(done.twist, done.dtheta, t)
         # What was asked for and what really happens, both seen where the hand truly is.
         true = robot.true

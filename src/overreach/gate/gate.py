@@ -1,7 +1,7 @@
 """The gate: every command passes it, every tick ends in one verdict. Pure: time comes in as `now`.
 
 Freshness is age at the receiver. Ramp: decelerate to zero, staying armed. Disarm: ramp, then only
-release and press. What is still to come (SAFETY.md): the watchdog process, feedback checks, leases.
+release and press. What the robot reports passes `feedback`, what is written to it `guard`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import final
 from overreach.errors import SetupError
 from overreach.gate.limits import Limits, limit_speed, slew
 from overreach.gate.stop import StopLatch
-from overreach.types import Record, Stick, Verdict
+from overreach.types import Motion, Record, Stick, Verdict, weightier
 
 STALE_S = 0.2
 """Without a fresh command for this long [s], the command ramps to zero."""
@@ -24,15 +24,15 @@ TOLD_S = 0.5
 """How long a refusal is told [s], where nothing weightier is."""
 OPERATORS_KEPT = 64
 """How many operators' last messages are remembered."""
-WEIGHT = {verdict: k for k, verdict in enumerate(Verdict)}
 
 
 class Gated(Record, frozen=True):
-    """What the gate lets through: v_c, w_c, the scale the speed limit put on them, and the verdict."""
+    """What the gate lets through: v_c, w_c, their scale by the speed limit, whether anything may move, verdict."""
 
     v_c: float
     w_c: float
     scale: float
+    motion: Motion
     verdict: Verdict
 
 
@@ -79,6 +79,8 @@ class Gate:
         keeps the robot until it rests and he has been silent for LOST_S.
         """
         latch = self.latch
+        if latch.fault:
+            return Verdict.FAULT
         if latch.stopped:
             return Verdict.STOPPED
         if latch.armed and latch.operator != operator and not (self.resting and now - self._fresh_at > LOST_S):
@@ -123,6 +125,8 @@ class Gate:
     def _wish(self, now: float) -> tuple[float, float, Verdict]:
         """Return the command that is asked for and allowed at `now`, before speed limits and ramps."""
         latch, stick = self.latch, self._stick
+        if latch.fault:
+            return 0.0, 0.0, Verdict.FAULT
         if latch.stopped:
             return 0.0, 0.0, Verdict.STOPPED
         if not latch.armed:
@@ -144,6 +148,7 @@ class Gate:
     def tick(self, now: float, dt: float) -> Gated:
         """Return the command for the period `dt` [s] that begins at `now` [s]."""
         v_c, w_c, verdict = self._wish(now)
+        wished = v_c != 0.0 or w_c != 0.0
         v_c, w_c, scale = limit_speed(v_c * self.speed_scale, w_c * self.speed_scale, self.limits)
         self._v_c, self._w_c, ramping = slew((self._v_c, self._w_c), (v_c, w_c), self.limits, dt)
         if verdict is Verdict.MOVING:
@@ -151,6 +156,7 @@ class Gate:
                 verdict = Verdict.SPEED
             elif ramping:
                 verdict = Verdict.ACCELERATION
-        if now - self._refused_at < TOLD_S and WEIGHT[self._refusal] < WEIGHT[verdict]:
-            verdict = self._refusal
-        return Gated(self._v_c, self._w_c, scale, verdict)
+        if now - self._refused_at < TOLD_S:
+            verdict = weightier(self._refusal, verdict)
+        motion = Motion.NONE if self.resting else Motion.ALLOWED if wished else Motion.RAMPING
+        return Gated(self._v_c, self._w_c, scale, motion, verdict)

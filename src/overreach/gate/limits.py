@@ -29,6 +29,11 @@ class Limits(Record, frozen=True):
             if not (math.isfinite(value) and value > 0.0):
                 raise SetupError(f"limit {name} must be a finite number > 0, got {value:g}")
 
+    @property
+    def ramp_s(self) -> float:
+        """The longest ramp of the command to zero [s]."""
+        return max(self.v_c / self.dv_c, self.w_c / self.dw_c)
+
 
 def limit_speed(v_c: float, w_c: float, limits: Limits) -> tuple[float, float, float]:
     """Return (v_c, w_c, scale): the command shrunk, both parts alike, until neither passes its limit."""
@@ -56,23 +61,27 @@ def feasible_scale(
     happening: Sequence[float],
     fastest: Sequence[float],
     change: Sequence[float],
+    apart: Sequence[float] | None = None,
 ) -> tuple[float, Verdict]:
-    """Return the greatest scale in [0, 1] of the rates `wanted` that keeps every limit, and why.
+    """Return the greatest scale in [0, 1] of a command that keeps every limit, and why.
 
-    Channel i must satisfy |scale wanted_i| <= fastest_i and |scale wanted_i - happening_i| <= change_i
-    (acceleration times the period). Where no scale keeps all accelerations, the one that is least far
-    out is returned; the caller then clamps each channel (`clamp_change`).
+    At scale s the rate of channel i is s wanted_i + apart_i, where `apart` (none by default) is what a channel does
+    whatever the command is. It must satisfy |rate_i| <= fastest_i and |rate_i - happening_i| <= change_i (acceleration
+    times the period). Where no scale keeps all, the one that is least far out is returned; the caller then
+    clamps each channel (`clamp_change`). All must be finite.
     """
     scale = 1.0
     verdict = Verdict.MOVING
-    for rate, most in zip(wanted, fastest, strict=True):
-        if abs(rate) * scale > most * (1.0 + SLACK):
-            scale = most / abs(rate)
+    rest = apart or (0.0,) * len(wanted)
+    for rate, own, most in zip(wanted, rest, fastest, strict=True):
+        along = own if rate > 0.0 else -own
+        if rate != 0.0 and abs(rate) * scale + along > most * (1.0 + SLACK):
+            scale = max(0.0, (most - along) / abs(rate))
             verdict = Verdict.SPEED
     low, high = 0.0, scale
-    for rate, was, step in zip(wanted, happening, change, strict=True):
+    for rate, own, was, step in zip(wanted, rest, happening, change, strict=True):
         if abs(rate) > SLACK:
-            one, other = (was - step) / rate, (was + step) / rate
+            one, other = (was - own - step) / rate, (was - own + step) / rate
             low = max(low, min(one, other))
             high = min(high, max(one, other))
     if high < scale - SLACK:

@@ -1,7 +1,8 @@
-"""The latches of the gate: stopped, armed, and the press of the dead-man that still counts.
+"""The latches of the gate: stopped, faulted, armed, and the press of the dead-man that still counts.
 
     start -> DISARMED --arm--> ARMED --(release, press)--> MOVING
     any --stop--> STOPPED --reset--> DISARMED
+    any --fail--> FAULT --reset--> DISARMED
 
 A press of the dead-man is told apart by its number (`grip`, counted by the operator's side), not by an
 edge, because on a latest-wins link the release between two presses may never arrive.
@@ -18,6 +19,8 @@ class StopLatch:
 
     def __init__(self) -> None:
         self.stopped = False
+        self.fault = ""
+        """Why the guard has stopped the robot; empty where it has not."""
         self.armed = False
         self.operator = 0
         """Session of the operator who armed; 0 while there is none."""
@@ -29,14 +32,25 @@ class StopLatch:
         self.stopped = True
         self.armed = False
 
+    def fail(self, reason: str) -> None:
+        """Latch a fault, for `reason`; the first one stays."""
+        self.fault = self.fault or reason
+        self.armed = False
+
+    @property
+    def latched(self) -> bool:
+        """Say whether only a reset leads on."""
+        return self.stopped or bool(self.fault)
+
     def reset(self) -> None:
-        """Release the latch. Nothing moves: the robot is disarmed."""
+        """Release both latches. Nothing moves: the robot is disarmed."""
         self.stopped = False
+        self.fault = ""
         self.armed = False
 
     def arm(self, operator: int, grip: int) -> None:
-        """Arm for `operator`, unless stopped; his presses up to number `grip` do not count."""
-        if not self.stopped:
+        """Arm for `operator`, unless latched; their presses up to number `grip` do not count."""
+        if not self.latched:
             self.armed = True
             self.operator = operator
             self.spent_grip = grip

@@ -10,7 +10,7 @@ from overreach.errors import WorkspaceError
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep, step, tanh
 from overreach.law.workspace import Mount, Workspace
-from overreach.types import Frame, Split
+from overreach.types import Frame, Split, Verdict
 
 
 class Law(Protocol):
@@ -41,6 +41,24 @@ class JointLaw(Law, Protocol):
     def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
         """Return the shares, joint rates among them, for the arm at joint angles theta [rad]; as `split` otherwise."""
         ...
+
+
+class Unusable(Exception):  # noqa: N818  # it is what the answer is, not an error of the caller's
+    """A law's answer that cannot be used; says which part is what."""
+
+
+def check_split(split: Split) -> None:
+    """Raise Unusable unless every number of a law's answer is finite, its scale in [0, 1] and its verdict one."""
+    rates = (split.v_b, split.w_b, split.v_m, split.w_m, *(split.dtheta or ()))
+    if math.isfinite(split.mu + split.sigma + sum(map(abs, rates))) and 0.0 <= split.scale <= 1.0:
+        if isinstance(split.verdict, Verdict):
+            return
+        raise Unusable(f"the verdict {split.verdict!r}")
+    for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
+        value = getattr(split, name)
+        if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
+            raise Unusable(f"{name} = {value}")
+    raise Unusable(f"rates too great to use: {rates}")
 
 
 def constants(workspace: Workspace, blend: Blend, mount: Mount) -> tuple[authority.Limits6, authority.Mount3]:

@@ -120,9 +120,10 @@ class State(msgspec.Struct, frozen=True, gc=False):
     """What the robot side tells, at least 50 times a second.
 
     t [s] of the robot side's monotonic clock; tick: number of the period; ack: seq of the last accepted
-    Stick of `operator`; verdict and scale: as in `types`; v_c, w_c: the command that got through the gate;
-    the rest as in `types` (state at t, rates from t on). late_p50, late_p99, late_max [us]: the loop's
-    lateness over the last second. revision: counts the changes of the settings.
+    Stick of `operator`; verdict, word, sentence, look and scale: as in `types`; stopped: whether only a reset leads
+    on; v_c, w_c: the command that got through the gate; the rest as in `types` (state at t, rates from t on).
+    late_p50, late_p99, late_max [us]: the loop's lateness over the last second. revision: counts the changes of
+    the settings.
     """
 
     t: float
@@ -161,6 +162,7 @@ class State(msgspec.Struct, frozen=True, gc=False):
     revision: int
     width_l: float
     width_psi: float
+    look: str = "warn"
 
 
 encode = msgspec.msgpack.Encoder().encode

@@ -10,7 +10,7 @@ import msgspec
 
 from overreach.errors import SetupError, WorkspaceError
 from overreach.law.workspace import Mount, Workspace
-from overreach.types import Record
+from overreach.types import Channel, Record
 
 
 class Arm2R(Record, frozen=True):
@@ -41,12 +41,16 @@ class Arm2R(Record, frozen=True):
 
 
 class BaseLimits(Record, frozen=True):
-    """v_max [m/s], w_max [rad/s], dv_max [m/s^2], dw_max [rad/s^2]; footprint: length, width [m]."""
+    """v_max [m/s], w_max [rad/s], dv_max [m/s^2], dw_max [rad/s^2]; lag [s]; footprint: length, width [m].
+
+    lag: time constant with which the base follows what it is asked for, 0 where it follows at once or it is not known.
+    """
 
     v_max: float = 0.6
     w_max: float = 2.0
     dv_max: float = 3.5
     dw_max: float = 12.0
+    lag: float = 0.0
     footprint: tuple[float, float] = (0.5, 0.4)
 
 
@@ -67,6 +71,21 @@ class PlanarRobot(Record, frozen=True):
     base: BaseLimits = BaseLimits()
     workspace: Workspace = Workspace()
     start: Start = Start()
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """The rates that are written, in order: v_b, w_b, dtheta_1, dtheta_2."""
+        base, arm = self.base, self.arm
+        return (
+            Channel("v_b", "the base's place", "m", base.v_max, base.dv_max, dead_band=0.03),
+            Channel("w_b", "the base's heading", "rad", base.w_max, base.dw_max, dead_band=0.105),
+            *(
+                Channel(f"dtheta_{k}", f"theta_{k}", "rad", speed, change, least, most, dead_band=0.105)
+                for k, (speed, change, least, most) in enumerate(
+                    zip(arm.dtheta_max, arm.ddtheta_max, arm.theta_min, arm.theta_max, strict=True), start=1
+                )
+            ),
+        )
 
     def __post_init__(self) -> None:
         self.check_workspace(self.workspace)

@@ -1,47 +1,76 @@
-"""What keeps a real actuator from doing at once what it is told: delay, first-order lag; and noise."""
+"""What keeps a real robot from doing at once what it is told, and from saying at once what it does."""
 
 from __future__ import annotations
 
 import math
 import random
 from collections import deque
+from typing import final
+
+import msgspec
 
 from overreach.errors import SetupError
-from overreach.types import Record
+from overreach.types import Record, RobotState
 
 
 class Imperfection(Record, frozen=True):
-    """delay_s: dead time of every actuator [s]; lag_s: time constant of its first-order lag [s];
-    noise: standard deviation of the measured joint angles [rad]; seed: of the noise.
+    """What is not ideal. All zero (gain 1): an ideal robot.
 
-    All zero: an ideal robot. Raises SetupError if a value is negative or not finite.
+    Actuators: delay_s: dead time of each [s]; lag_s: time constant of its first-order lag [s]; base_lag_s: the base's,
+    where it is another; dead_band: rates [m/s, rad/s] below which nothing moves; gain: what moves, as a part of what
+    was asked for. Sensors: noise: standard deviation of the measured joint angles [rad]; rate_noise: of
+    all measured rates [m/s, rad/s]; feedback_s: time from one report to the next [s], 0 for one whenever it is read;
+    feedback_delay_s: age of a report when it comes [s]; seed: of the noise. Raises SetupError if a value is negative or
+    not finite.
     """
 
     delay_s: float = 0.0
     lag_s: float = 0.0
     noise: float = 0.0
     seed: int = 0
+    base_lag_s: float | None = None
+    dead_band: tuple[float, float] = (0.0, 0.0)
+    gain: float = 1.0
+    rate_noise: float = 0.0
+    feedback_s: float = 0.0
+    feedback_delay_s: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("delay_s", "lag_s", "noise"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
-                raise SetupError(f"{name} must be a finite number >= 0, got {value:g}")
+        for name in ("delay_s", "lag_s", "noise", "gain", "rate_noise", "feedback_s", "feedback_delay_s"):
+            _check(name, getattr(self, name))
+        _check("base_lag_s", self.base_lag_s or 0.0)
+        for rate in self.dead_band:
+            _check("dead_band", rate)
         if self.noise > math.pi:
             raise SetupError(f"noise must be at most pi rad, got {self.noise:g}")
 
     @property
     def ideal(self) -> bool:
         """Say whether what is asked for happens at once and is measured as it is."""
-        return self.delay_s == 0.0 and self.lag_s == 0.0 and self.noise == 0.0
+        return self == Imperfection(seed=self.seed)
+
+    def lags(self, channels: int) -> tuple[float, ...]:
+        """Return the time constant of each channel [s]; the first two are the base's."""
+        base = self.lag_s if self.base_lag_s is None else self.base_lag_s
+        return (base, base, *(self.lag_s,) * (channels - 2))
 
 
+def _check(name: str, value: float) -> None:
+    if not (math.isfinite(value) and value >= 0.0):
+        raise SetupError(f"{name} must be a finite number >= 0, got {value:g}")
+
+
+@final
 class Actuators:
-    """Rates as they are asked for -> rates as they happen, for any number of channels."""
+    """Rates as they are asked for -> rates as they happen, for any number of channels; the first is a base's speed."""
 
     def __init__(self, channels: int, imperfection: Imperfection) -> None:
         self._delay = imperfection.delay_s
-        self._lag = imperfection.lag_s
+        self._lags = imperfection.lags(channels)
+        self._lagging = any(self._lags)
+        forward, turning = imperfection.dead_band
+        self._dead = (forward, *(turning,) * (channels - 1))
+        self._gain = imperfection.gain
         self._queue: deque[tuple[float, tuple[float, ...]]] = deque()
         self._target = (0.0,) * channels
         self.happening = (0.0,) * channels
@@ -49,10 +78,14 @@ class Actuators:
     @property
     def ideal(self) -> bool:
         """Say whether what is asked for happens at once."""
-        return self._delay == 0.0 and self._lag == 0.0
+        return self._delay == 0.0 and not self._lagging
 
     def ask(self, rates: tuple[float, ...], now: float) -> None:
         """Ask for `rates` from `now` on."""
+        if self._gain != 1.0 or any(self._dead):
+            rates = tuple(
+                0.0 if abs(rate) < least else self._gain * rate for rate, least in zip(rates, self._dead, strict=True)
+            )
         if self._delay > 0.0:
             self._queue.append((now + self._delay, rates))
         else:
@@ -64,7 +97,7 @@ class Actuators:
         """Return when, after `now` and by `end`, a delayed request takes effect (else `end`)."""
         while self._queue and self._queue[0][0] <= now:
             self._target = self._queue.popleft()[1]
-            if self._lag == 0.0:
+            if not self._lagging:
                 self.happening = self._target
         return min(end, self._queue[0][0]) if self._queue else end
 
@@ -73,26 +106,68 @@ class Actuators:
 
         First-order lag: h(t) = g + (h0 - g) exp(-t/tau), with the mean g + (h0 - g) (1 - exp(-dt/tau)) tau/dt.
         """
-        if self._lag == 0.0 or dt <= 0.0:
+        if not self._lagging or dt <= 0.0:
             return self.happening
-        fade = math.exp(-dt / self._lag)
-        part = (1.0 - fade) * self._lag / dt
-        mean = tuple(goal + (rate - goal) * part for goal, rate in zip(self._target, self.happening, strict=True))
-        self.happening = tuple(
-            goal + (rate - goal) * fade for goal, rate in zip(self._target, self.happening, strict=True)
-        )
-        return mean
+        mean, after = [], []
+        for goal, rate, lag in zip(self._target, self.happening, self._lags, strict=True):
+            if lag == 0.0:
+                mean.append(goal)
+                after.append(goal)
+                continue
+            fade = math.exp(-dt / lag)
+            part = (1.0 - fade) * lag / dt
+            mean.append(goal + (rate - goal) * part)
+            after.append(goal + (rate - goal) * fade)
+        self.happening = tuple(after)
+        return tuple(mean)
 
 
-class JointNoise:
-    """Seeded Gaussian noise on measured joint angles."""
+@final
+class Sensors:
+    """States as they are -> states as they are reported: noisy, now and then, late."""
 
-    def __init__(self, imperfection: Imperfection) -> None:
-        self._sigma = imperfection.noise
+    def __init__(self, imperfection: Imperfection, now: float) -> None:
+        self._noise = imperfection.noise
+        self._rate_noise = imperfection.rate_noise
         self._random = random.Random(imperfection.seed)
+        self._every = imperfection.feedback_s
+        self._delay = imperfection.feedback_delay_s
+        self._next = now
+        self._coming: deque[RobotState] = deque()
+        self._last: RobotState | None = None
 
-    def measured(self, theta: tuple[float, ...]) -> tuple[float, ...]:
-        """Return `theta` [rad] as a noisy encoder would show it."""
-        if self._sigma == 0.0:
-            return theta
-        return tuple(angle + self._random.gauss(0.0, self._sigma) for angle in theta)
+    def due(self, end: float) -> float:
+        """Return the next time, by `end`, at which the state is to be seen (else `end`)."""
+        return min(end, self._next) if self._every > 0.0 else end
+
+    def see(self, state: RobotState) -> None:
+        """Look at the true `state`, at its time; what is not due is not seen."""
+        if self._every > 0.0:
+            if state.t < self._next:
+                return
+            self._next += self._every
+        if self._every > 0.0 or self._delay > 0.0:
+            self._coming.append(self._noisy(state))
+
+    def report(self, state: RobotState, now: float) -> RobotState:
+        """Return what there is to be read at `now` [s], where the truth is `state`."""
+        if self._every == 0.0 and self._delay == 0.0:
+            return self._noisy(state)
+        while self._coming and self._coming[0].t + self._delay <= now:
+            self._last = self._coming.popleft()
+        # What comes before the first report is of a robot that has always stood there.
+        return self._last or msgspec.structs.replace(self._coming[0] if self._coming else state, t=now - self._delay)
+
+    def _noisy(self, state: RobotState) -> RobotState:
+        if self._noise == 0.0 and self._rate_noise == 0.0:
+            return state
+        return msgspec.structs.replace(
+            state,
+            theta=self._with_noise(state.theta, self._noise),
+            dtheta=self._with_noise(state.dtheta, self._rate_noise),
+            v_b=self._with_noise((state.v_b,), self._rate_noise)[0],
+            w_b=self._with_noise((state.w_b,), self._rate_noise)[0],
+        )
+
+    def _with_noise(self, values: tuple[float, ...], sigma: float) -> tuple[float, ...]:
+        return tuple(value + self._random.gauss(0.0, sigma) for value in values) if sigma > 0.0 else values

@@ -7,7 +7,7 @@ from typing import final
 from overreach.arm.planar import inverse
 from overreach.model.planar import PlanarRobot, load_planar
 from overreach.robots.arc import arc
-from overreach.robots.imperfect import Actuators, Imperfection, JointNoise
+from overreach.robots.imperfect import Actuators, Imperfection, Sensors
 from overreach.types import BaseTwist, RobotState
 
 LONGEST_PIECE = 0.005
@@ -42,8 +42,9 @@ class KinematicRobot:
         self._pose = (0.0, 0.0, 0.0)
         self._theta: tuple[float, ...] = inverse(self._l, self._psi, *arm.links, arm.elbow)
         self._actuators = Actuators(4, self._imperfection)
-        self._noise = JointNoise(self._imperfection)
         self._now = now
+        self._sensors = Sensors(self._imperfection, now)
+        self._sensors.see(self.true)
 
     @property
     def true(self) -> RobotState:
@@ -54,8 +55,7 @@ class KinematicRobot:
     def read(self, now: float) -> RobotState:
         """Return the measured state at `now` [s]."""
         self._move_to(now)
-        v_b, w_b, *dtheta = self._actuators.happening
-        return RobotState(self._now, *self._pose, v_b, w_b, self._noise.measured(self._theta), tuple(dtheta))
+        return self._sensors.report(self.true, now)
 
     def write(self, twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
         """Ask for a base twist and joint rates from `now` on."""
@@ -71,6 +71,7 @@ class KinematicRobot:
             until = self._actuators.next_change(self._now, end)
             if not self._actuators.ideal:
                 until = min(until, self._now + LONGEST_PIECE)
+            until = self._sensors.due(until)
             dt = until - self._now
             v_b, w_b, *dtheta = self._actuators.advance(dt)
             self._pose = arc(*self._pose, v_b, w_b, dt)
@@ -80,3 +81,4 @@ class KinematicRobot:
                 for angle, rate, least, most in zip(self._theta, dtheta, arm.theta_min, arm.theta_max, strict=True)
             )
             self._now = until
+            self._sensors.see(self.true)

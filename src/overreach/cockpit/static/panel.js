@@ -1,10 +1,5 @@
 // What the page says in words and numbers: verdict, authority, readout, and which buttons make sense.
 
-const KINDS = {
-  moving: "go", acceleration: "go", released: "ready", speed: "warn", joint_limit: "warn", singular: "warn", out_of_reach: "warn",
-  beside: "warn", stale: "warn", regrip: "warn", lost: "warn", not_finite: "warn", other_operator: "warn", out_of_order: "warn",
-  disarmed: "down", stopped: "stop",
-};
 const NUMBERS_MS = 120;
 const TOLD_MS = 2500;
 const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
@@ -41,10 +36,10 @@ export class Panel {
       this.told = now;
       this.numbers(s, speed);
     }
-    const part = s.scale < 0.995 && ["speed", "acceleration", "joint_limit", "beside"].includes(s.verdict) ? ` (× ${s.scale.toFixed(2)})` : "";
+    const part = s.scale > 0 && s.scale < 0.995 && s.look !== "stop" ? ` (× ${s.scale.toFixed(2)})` : "";
     if (now > this.until) {
       if (s.armed && !mine) this.say("warn", "Watching", "Another page has armed the robot. Arm takes over when it rests.");
-      else this.say(KINDS[s.verdict] ?? "warn", s.word, s.sentence + part);
+      else this.say(s.look, s.word, s.sentence + part);
     }
     for (const { name, bar, fill, who, value } of this.shares) {
       const share = s[name];

@@ -1,0 +1,60 @@
+"""What a robot was asked for, and when: it is compared with what the robot reports of the same time. Pure."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import final
+
+LAG_S = 0.3
+"""Time constant [s] of the slowest robot that still counts as following."""
+KEPT = 4096
+"""Requests that are kept for a report that has not come yet."""
+
+Rates = tuple[float, ...]
+
+
+@final
+class Asked:
+    """Rates asked for, as they were in force at the time of the newest report, at once and through a first-order lag.
+
+    in_force: the rates last asked for before that time; lagged: the response of dx/dt = (in_force - x)/LAG_S to them.
+    """
+
+    def __init__(self, channels: int) -> None:
+        self._zero = (0.0,) * channels
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the past: the robot is at rest."""
+        self.in_force = self.lagged = self._last = self._zero
+        self._later: deque[tuple[float, Rates]] = deque(maxlen=KEPT)
+        self._t = -math.inf
+
+    def reset(self) -> None:
+        """Keep what was asked for; the next report may be of any time."""
+        self._t = -math.inf
+
+    def add(self, rates: Rates, t: float) -> None:
+        """Note that `rates` are asked for from `t` [s] on."""
+        if rates != self._last:
+            self._later.append((t, rates))
+            self._last = rates
+
+    def move_to(self, t: float) -> None:
+        """Go on to the time `t` [s] of a newer report. What was asked for at `t` itself came after the report."""
+        while self._later and self._later[0][0] < t:
+            at, rates = self._later.popleft()
+            self._lag_to(at)
+            self.in_force = rates
+        self._lag_to(t)
+
+    def _lag_to(self, t: float) -> None:
+        if t <= self._t:
+            return
+        if self._t > -math.inf and self.lagged != self.in_force:
+            fade = math.exp((self._t - t) / LAG_S)
+            self.lagged = tuple(
+                goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)
+            )
+        self._t = t

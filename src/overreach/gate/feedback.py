@@ -1,0 +1,151 @@
+"""What a robot reports, before anything is decided from it: finite, in range, alive, and does it follow? Pure.
+
+state --> finite? in range? newer? moved when asked? as fast as asked? --> believed, or a fault with its reason
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from typing import final
+
+from overreach.gate.asked import Asked
+from overreach.types import Channel
+
+BEYOND = {"rad": 0.05, "m": 0.02}
+"""A joint that reads this far past its limit [rad, m] is out of range ..."""
+TOO_FAST = 2.0
+"""... and so is a rate that reads this many times its limit."""
+FROZEN_S = 0.1
+"""The robot's time must advance this often [s]; a position that was asked to move enough must change within it."""
+FROZEN_STEPS = 3.0
+"""How many steps of its resolution a position may owe before it is frozen."""
+OLD_S = 1.0
+"""A report older than this [s] is of no use ..."""
+AHEAD_S = 0.1
+"""... nor one that is this far [s] ahead."""
+TOLERANCE = {"m": 0.1, "rad": 0.2}
+"""A rate follows if it is this near [m/s, rad/s] to what was asked for ..."""
+TOLERANCE_PART = 0.3
+"""... or this near as a part of it."""
+FOLLOW_S = 0.3
+"""How long [s] a rate may be farther off."""
+SLOWEST = 1.5
+"""Rates below this many dead bands move nothing for certain."""
+
+Position = float | complex
+"""What a channel's rate moves; complex where that is a point of the plane."""
+
+
+@final
+class Feedback:
+    """Checks each report of a robot against what was asked of it; see the thresholds above.
+
+    A rate is as asked for where it lies between the request at once and the request through a lag of 0.3 s, give or
+    take the tolerance. `asked` holds both, for the time of the newest report.
+    """
+
+    def __init__(self, channels: Sequence[Channel]) -> None:
+        self._channels = tuple(channels)
+        self.asked = Asked(len(self._channels))
+        self._ranges = [
+            (k, channel.lower - BEYOND[channel.unit], channel.upper + BEYOND[channel.unit])
+            for k, channel in enumerate(self._channels)
+            if math.isfinite(channel.lower) or math.isfinite(channel.upper)
+        ]
+        self._follow = [
+            (TOLERANCE[channel.unit], SLOWEST * channel.dead_band, FROZEN_STEPS * channel.resolution)
+            for channel in self._channels
+        ]
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the past: the robot was put somewhere else, at rest."""
+        self.asked.restart()
+        self.reset()
+
+    def reset(self) -> None:
+        """Look at everything anew, but for what was asked: a fault was reset."""
+        n = len(self._channels)
+        self.asked.reset()
+        self.stamp = -math.inf
+        """Time of the newest report that was believed [s]."""
+        self._came_at = math.inf
+        self._positions: list[Position | None] = [None] * n
+        self._changed_at = [0.0] * n
+        self._owed = [0.0] * n
+        self._off_since = [math.inf] * n
+
+    def check(self, t: float, positions: Sequence[Position], rates: Sequence[float], now: float) -> str:
+        """Return what is wrong with a report that holds of `t` [s] and is read at `now` [s], both on one clock; or "".
+
+        positions [m, rad] and rates [m/s, rad/s]: one a channel.
+        """
+        if t == -math.inf:
+            return "The robot has reported nothing yet."
+        if not cmath.isfinite(sum(positions, t + sum(rates))):
+            return self._not_finite(t, positions, rates)
+        for k, least, most in self._ranges:
+            if not least <= positions[k].real <= most:
+                return self._out_of_range(self._channels[k].moves, positions[k].real, self._channels[k].unit)
+        for k, rate in enumerate(rates):
+            if abs(rate) > TOO_FAST * self._channels[k].rate_max:
+                return self._out_of_range(self._channels[k].name, rate, f"{self._channels[k].unit}/s")
+        if t <= self.stamp:
+            if now - self._came_at > FROZEN_S:
+                return f"The robot's feedback is frozen: its time has not advanced for {FROZEN_S * 1000:.0f} ms."
+            return ""
+        if not -AHEAD_S <= now - t <= OLD_S:
+            return f"The robot's feedback is of another time: {t - now:+.3g} s from now."
+        passed = 0.0 if self.stamp == -math.inf else t - self.stamp
+        self.stamp = t
+        self._came_at = now
+        self.asked.move_to(t)
+        return self._follows(t, passed, positions, rates)
+
+    def _follows(self, t: float, passed: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
+        """Return which channel does not do what was asked of it, and how; or ""."""
+        asked, lagged = self.asked.in_force, self.asked.lagged
+        for k, (tolerance, slowest, owed) in enumerate(self._follow):
+            at_once, slowly, rate = asked[k], lagged[k], rates[k]
+            low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
+            off = low - rate if rate < low else rate - high
+            if off > tolerance and off > TOLERANCE_PART * max(-low, high):
+                self._off_since[k] = min(self._off_since[k], t)
+                if t - self._off_since[k] > FOLLOW_S:
+                    return self._not_following(k, rate)
+            else:
+                self._off_since[k] = math.inf
+            if positions[k] != self._positions[k]:
+                self._positions[k] = positions[k]
+                self._changed_at[k] = t
+                self._owed[k] = 0.0
+            elif low > slowest or high < -slowest:
+                self._owed[k] += min(abs(low), abs(high)) * passed
+                if self._owed[k] > owed and t - self._changed_at[k] > FROZEN_S:
+                    moves = self._channels[k].moves
+                    return f"The robot's feedback is frozen: {moves} does not change, though it was asked to."
+        return ""
+
+    def _not_finite(self, t: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
+        for channel, position, rate in zip(self._channels, positions, rates, strict=True):
+            for name, value in ((channel.moves, position), (channel.name, rate)):
+                if not cmath.isfinite(value):
+                    return f"The robot's feedback of {name} is not finite."
+        return (
+            "The robot's feedback has no finite time."
+            if not math.isfinite(t)
+            else "The robot's feedback is not finite."
+        )
+
+    @staticmethod
+    def _out_of_range(name: str, value: float, unit: str) -> str:
+        return f"The robot's feedback of {name} is out of range: {value:.4g} {unit}."
+
+    def _not_following(self, k: int, rate: float) -> str:
+        channel = self._channels[k]
+        return (
+            f"The robot does not follow: {channel.name} is {rate:.2g} {channel.unit}/s, "
+            f"{self.asked.in_force[k]:.2g} was asked for."
+        )
