@@ -35,10 +35,10 @@ def until(true: Callable[[], object], seconds: float = GENEROUS_S, what: str = "
 class Half:
     """One `overreach` process."""
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, env: dict[str, str] | None = None) -> None:
         self.process = subprocess.Popen(
             [sys.executable, "-m", "overreach", *arguments],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, env=env,
         )  # fmt: skip
 
     @property
@@ -70,9 +70,9 @@ class Half:
 
 
 @contextmanager
-def half(*arguments: str) -> Iterator[Half]:
+def half(*arguments: str, env: dict[str, str] | None = None) -> Iterator[Half]:
     """Run one process for the length of the block."""
-    running = Half(*arguments)
+    running = Half(*arguments, env=env)
     try:
         yield running
     finally:
@@ -110,10 +110,10 @@ class Observer:
 
 
 @contextmanager
-def robot(*arguments: str) -> Iterator[tuple[str, Half, Observer]]:
+def robot(*arguments: str, env: dict[str, str] | None = None) -> Iterator[tuple[str, Half, Observer]]:
     """Run a robot side; yield its endpoint, it, and an observer."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
-    with half("robot", "--listen", endpoint, *arguments) as running:
+    with half("robot", "--listen", endpoint, *arguments, env=env) as running:
         observer = Observer(endpoint)
         try:
             yield endpoint, running, observer

@@ -145,6 +145,7 @@ class Loop:
                 self._clock.sleep_until(deadline)
                 step = self.controller.ramp(dt)
                 self._write(step, deadline)
+                self._tick += 1
                 with contextlib.suppress(Exception):
                     gated = Gated(0.0, 0.0, 1.0, Motion.NONE, Verdict.ENDING)
                     self._publish(deadline, gated, step)

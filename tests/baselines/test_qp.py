@@ -71,11 +71,34 @@ def test_qp_keeps_its_limits_and_is_optimal(l: float, psi: float, v_c: float, w_
 def test_a_solver_that_fails_is_a_verdict_and_a_zero() -> None:
     """A solver that gives up, or raises, makes the law answer zero with NO_SOLUTION; nothing is raised."""
     starved = qp(solver="osqp", max_iter=1)
-    refused = qp(solver="daqp", no_such_setting=1.0)
-    for law in (starved, refused):
+    raising = qp(solver="daqp-direct")
+    raising._least = "no bounds"
+    for law in (starved, raising):
         split = law.split(0.6, 0.2, 0.4, 0.1)
         assert (split.v_b, split.w_b, split.v_m, split.w_m, split.scale) == (0.0,) * 5
         assert split.verdict is Verdict.NO_SOLUTION
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_no_solver_raises(name: str) -> None:
+    """Whatever a solver does with a problem that is none, the answer is None."""
+    solve = solver(name)
+    assert solve("no matrix", np.ones(4), -np.ones(4), np.ones(4)) is None
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_a_mistyped_setting_fails_at_set_up(name: str) -> None:
+    """A setting that the solver lacks, or a value it cannot use, is one line at set-up, not NO_SOLUTION for ever."""
+    with pytest.raises(UnknownNameError, match=f"setting of the QP solver {name} 'no_such'.*Valid: ") as caught:
+        qp(solver=name, no_such=1.0)
+    assert "\n" not in str(caught.value)
+    with pytest.raises(UnknownNameError, match="Did you mean 'damping'"):
+        qp(solver=name, dampin=0.1)
+    if name != "quadprog":  # its one setting is a switch, and takes anything
+        setting = next(key for key in caught.value.valid if "tol" in key or "eps" in key)
+        with pytest.raises(SetupError, match=f"cannot use {setting} = 'wide'") as of_value:
+            qp(solver=name, **{setting: "wide"})  # type: ignore[arg-type]
+        assert "\n" not in str(of_value.value)
 
 
 @pytest.mark.parametrize("law", [EACH["daqp"], holistic()], ids=lambda law: law.name)

@@ -59,9 +59,9 @@ def solver(name: str, **settings: float) -> Solve:
     pack = require("scipy.sparse", "qp", f"the QP solver {name}").csc_matrix if name in SPARSE else None
 
     def solve(P: Array, q: Array, lb: Array, ub: Array, A: Array | None = None, b: Array | None = None) -> Array | None:
-        if pack is not None:
-            P, A = pack(P), None if A is None else pack(A)
         try:
+            if pack is not None:
+                P, A = pack(P), None if A is None else pack(A)
             return solve_qp(P, q, None, None, A, b, lb, ub, solver=name, **chosen)
         except Exception:  # whatever a solver raises, the robot is to stand still
             return None

@@ -121,8 +121,8 @@ class Feedback:
                 self._positions[k] = positions[k]
                 self._changed_at[k] = t
                 self._owed[k] = 0.0
-            elif low > slowest or high < -slowest:
-                self._owed[k] += min(abs(low), abs(high)) * passed
+            elif abs(at_once) > slowest and at_once * slowly > 0.0:
+                self._owed[k] += min(abs(at_once), abs(slowly)) * passed
                 if self._owed[k] > owed and t - self._changed_at[k] > FROZEN_S:
                     moves = self._channels[k].moves
                     return f"The robot's feedback is frozen: {moves} does not change, though it was asked to."

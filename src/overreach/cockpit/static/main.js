@@ -65,7 +65,7 @@ view.afterDraw.push((state) => {
 });
 view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
 setInterval(() => {
-  if (link.ready && performance.now() - page.heard > SILENT_MS) panel.down("The robot side is silent.");
+  if (link.ready && performance.now() - page.heard > SILENT_MS) panel.down(page.state?.verdict === "ending" ? "The robot side has ended." : "The robot side is silent.");
 }, 100);
 
 async function ask(what) {

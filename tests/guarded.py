@@ -1,0 +1,90 @@
+"""Gate, controller and robot as the loop puts them together, without a wire: for tests by the million ticks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+from overreach.control import HandController
+from overreach.gate.gate import Gate
+from overreach.law.laws import Law, exact
+from overreach.model.planar import PlanarRobot
+from overreach.robots.imperfect import Imperfection
+from overreach.robots.kinematic import KinematicRobot
+from overreach.types import RobotState, Step, Stick
+
+ME = 11
+MOST = (0.6, 2.0, 3.0, 3.0)
+"""Greatest v_b [m/s], w_b, dtheta_1, dtheta_2 [rad/s] of the planar robot ..."""
+CHANGE = (3.5, 12.0, 20.0, 20.0)
+"""... and their greatest changes [m/s^2, rad/s^2]."""
+STOP_S = 0.6 / 3.5
+"""The longest v/a: a robot that is told to stop stands still within this [s] and a period."""
+
+
+class Side:
+    """The robot side's way of one tick. `altered` is put between the robot and whoever reads it."""
+
+    def __init__(
+        self,
+        law: Law | None = None,
+        start: float = 50.0,
+        dt: float = 0.005,
+        altered: Callable[[RobotState], RobotState | None] = lambda state: state,
+        imperfection: Imperfection | None = None,
+        model: PlanarRobot | None = None,
+    ) -> None:
+        self.dt = dt
+        self.now = start
+        self.gate = Gate()
+        self.robot = KinematicRobot(model, imperfection, now=start)
+        law = law or exact()
+        self.controller = HandController(self.robot.model, law, ramp_s=self.gate.limits.ramp_s)
+        self.altered = altered
+        self.seq = self.grip = 0
+        self.stick = (0.0, 0.0)
+        self.held = False
+        self.written: list[tuple[float, ...]] = [(0.0, 0.0, 0.0, 0.0)]
+
+    def arm(self) -> None:
+        self.gate.arm(ME, self.grip, self.now)
+        self.grip += 1
+        self.held = True
+
+    def reset(self) -> None:
+        self.gate.latch.reset()
+        self.controller.reset()
+
+    def tick(self) -> Step:
+        self.seq += 1
+        self.gate.accept(Stick(ME, self.seq, self.grip, self.held, *self.stick), self.now)
+        gated = self.gate.tick(self.now, self.dt)
+        state = self.altered(self.robot.read(self.now))
+        step = self.controller.step(state, gated.v_c, gated.w_c, self.dt, self.now, gated.motion)
+        self.robot.write(step.twist, step.dtheta, self.now)
+        if self.controller.guard.fault:
+            self.gate.latch.fail(self.controller.guard.fault)
+        self.written.append(step.rates)
+        self.now += self.dt
+        return step
+
+    def drive(self, seconds: float, v_c: float = 0.4, w_c: float = 0.0) -> Step:
+        self.stick = (v_c, w_c)
+        for _ in range(round(seconds / self.dt)):
+            step = self.tick()
+        return step
+
+    def check(self, since: int = 0) -> None:
+        """Assert that all that was written from tick number `since` on keeps speed and acceleration."""
+        for before, after in pairwise(self.written[since:]):
+            for was, is_, most, change in zip(before, after, MOST, CHANGE, strict=True):
+                assert math.isfinite(is_)
+                assert abs(is_) <= most * (1 + 1e-9)
+                assert abs(is_ - was) <= change * self.dt * (1 + 1e-9)
+
+    def check_still(self, since: int) -> None:
+        """Assert that from STOP_S and a period after tick number `since` on nothing but zero was written."""
+        first = since + math.ceil(STOP_S / self.dt) + 1
+        assert len(self.written) > first + 10
+        assert not any(any(rates) for rates in self.written[first:])
