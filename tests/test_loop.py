@@ -1,5 +1,10 @@
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import Any, cast
+
 import pytest
 
 from overreach.clock import SteppedClock
@@ -8,6 +13,7 @@ from overreach.link.robot_end import RobotEnd
 from overreach.loop import Loop
 from overreach.model.planar import load_planar
 from overreach.robots.kinematic import KinematicRobot
+from overreach.types import BaseTwist, RobotState, Stick, Verdict
 
 PERIOD = 0.005
 
@@ -40,3 +46,167 @@ def test_an_overrun_is_counted_and_never_made_up_for(late: float) -> None:
     assert periods == [float(slot) for slot in slots]  # always on the beat
     assert loop.overruns == slots[-1] - len(slots)
     assert loop.overruns == int(late / PERIOD)
+
+
+class Driver:
+    """A robot's driver that keeps what is written, and raises when it is told to."""
+
+    def __init__(self, now: float) -> None:
+        self.robot = KinematicRobot(now=now)
+        self.written: list[tuple[float, ...]] = []
+        self.stopped = 0
+        self.unreadable: Exception | None = None
+        self.unwritable: Exception | None = None
+
+    def read(self, now: float) -> RobotState:
+        if self.unreadable:
+            raise self.unreadable
+        return self.robot.read(now)
+
+    def write(self, twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
+        if self.unwritable:
+            raise self.unwritable
+        self.written.append((twist.v_b, twist.w_b, *dtheta))
+        self.robot.write(twist, dtheta, now)
+
+    def stop(self, now: float) -> None:
+        self.stopped += 1
+        self.robot.stop(now)
+
+
+class Bench:
+    """A loop on a stepped clock, with a real link, and an operator who pushes forward."""
+
+    def __init__(self, link: RobotEnd) -> None:
+        self.clock = SteppedClock(100.0)
+        self.driver = Driver(100.0)
+        model = self.driver.robot.model
+        self.loop = Loop(model, cast(Any, self.driver), link, self.clock, 1.0 / PERIOD)
+        self.seq = 0
+        self.loop.gate.arm(7, 0, self.clock.now())
+
+    def push(self) -> None:
+        self.seq += 1
+        self.loop.gate.accept(Stick(7, self.seq, 1, True, 0.4, 0.0), self.clock.now())
+
+    def drive(self, ticks: int, at: Callable[[int], object] = lambda k: None) -> None:
+        """Run for `ticks`, with the act `at` before each."""
+        count = 0
+
+        def running() -> bool:
+            nonlocal count
+            at(count)
+            self.push()
+            count += 1
+            return count <= ticks
+
+        self.loop.run(running)
+
+    def check(self) -> None:
+        """All that was written keeps the accelerations of base and joints, and ends at zero; then one stop."""
+        assert max(rates[0] for rates in self.driver.written) > 0.3
+        for before, after in pairwise(self.driver.written):
+            for was, is_, change in zip(before, after, (3.5, 12.0, 20.0, 20.0), strict=True):
+                assert abs(is_ - was) <= change * PERIOD * (1 + 1e-9)
+        assert self.driver.written[-1] == (0.0, 0.0, 0.0, 0.0)
+        assert self.driver.stopped == 1
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    link = RobotEnd(f"tcp/127.0.0.1:{free_port()}")
+    try:
+        yield Bench(link)
+    finally:
+        link.close()
+
+
+def test_a_run_that_ends_in_motion_ramps(bench: Bench) -> None:
+    """A run that is told to end writes a ramp to zero, on the beat, before it stops the robot."""
+    bench.drive(300)
+    bench.check()
+    ramp = bench.driver.written[300:]
+    assert 20 <= len(ramp) <= 35
+
+
+@pytest.mark.parametrize("error", [RuntimeError("link"), KeyboardInterrupt(), SystemExit(3)])
+def test_an_exception_ends_a_run_with_a_ramp(bench: Bench, error: BaseException) -> None:
+    """Whatever ends a run, by whatever part of it, the robot ramps to zero first; then the exception goes on."""
+
+    def raising(k: int) -> None:
+        if k == 300:
+            raise error
+
+    with pytest.raises(type(error)):
+        bench.drive(400, raising)
+    bench.check()
+
+
+def test_a_link_that_raises_does_not_keep_the_robot_from_its_ramp(bench: Bench) -> None:
+    """A link that is gone ends the run; the ramp goes on without it."""
+
+    def gone(k: int) -> None:
+        if k == 300:
+            bench.loop._link.close()
+
+    with contextlib.suppress(Exception):
+        bench.drive(400, gone)
+    bench.check()
+
+
+@pytest.mark.parametrize("error", [OSError("no such device"), ValueError("checksum")])
+def test_a_robot_that_cannot_be_read_is_a_fault(bench: Bench, error: Exception) -> None:
+    """A driver that raises on read: FAULT with what it said, a ramp; the loop goes on; a reset finds it well."""
+
+    def broken(k: int) -> None:
+        bench.driver.unreadable = error if 300 <= k < 400 else None
+        if k == 390:
+            assert bench.loop.gate.latch.fault == f"The robot could not be read: {type(error).__name__}: {error}."
+            assert bench.driver.written[-1] == (0.0, 0.0, 0.0, 0.0)
+            assert bench.loop.gate.tick(bench.clock.now(), PERIOD).verdict is Verdict.FAULT
+        if k == 410:
+            bench.loop.gate.latch.reset()
+            bench.loop.controller.reset()
+            assert bench.loop.gate.arm(7, 0, bench.clock.now()) is None
+
+    bench.drive(500, broken)
+    bench.check()
+    assert bench.loop.gate.latch.fault == ""
+
+
+def test_a_robot_that_cannot_be_written_to_is_a_fault(bench: Bench) -> None:
+    """A driver that raises on write: FAULT; what is written when it can be again is on the way to zero."""
+
+    def broken(k: int) -> None:
+        bench.driver.unwritable = OSError("cable") if 300 <= k < 303 else None
+        if k == 302:
+            assert bench.loop.gate.latch.fault == "The robot could not be written to: OSError: cable."
+
+    bench.drive(400, broken)
+    assert max(rates[0] for rates in bench.driver.written) > 0.3
+    after = [rates[0] for rates in bench.driver.written[300:]]
+    assert after == sorted(after, reverse=True)
+    assert after[-1] == 0.0
+
+
+@pytest.mark.parametrize(("slow", "fault"), [(2, False), (3, True)])
+def test_a_law_that_is_slow_three_times_in_a_row_is_a_fault(bench: Bench, slow: int, fault: bool) -> None:
+    """A decision that takes longer than a period is an overrun; three in a row are a fault of the law."""
+    law = bench.loop.controller.law
+    split, calls = law.split, 0
+
+    class Slow:
+        name, frame, closes_residual = "slow", law.frame, law.closes_residual
+        workspace, blend, mount = law.workspace, law.blend, law.mount
+
+        def split(self, *case: float) -> Any:
+            nonlocal calls
+            calls += 1
+            if calls % 50 < slow:
+                bench.clock.t += 1.01 * PERIOD
+            return split(*case)
+
+    bench.loop.controller.configure(cast(Any, Slow()))
+    bench.drive(300)
+    assert bench.loop.overruns > 0
+    assert (bench.loop.gate.latch.fault == "The law 'slow' takes 5 ms; a period has 5 ms.") is fault

@@ -5,11 +5,18 @@ import importlib
 import inspect
 import pkgutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import overreach
+from overreach.control import HandController
+from overreach.gate.guard import Guard
+from overreach.link.messages import Settings
+from overreach.loop import Loop
+from overreach.robot_side import run_robot
 
 ROOT = Path(overreach.__file__).parent
 ORDER = [
@@ -154,3 +161,40 @@ def test_files_are_small() -> None:
     long = {path.name: n for path in ROOT.rglob("*.py") if (n := len(path.read_text().splitlines())) > 300}
     assert long == {}
     assert sys.version_info >= (3, 11)
+
+
+def test_nothing_that_moves_a_robot_can_switch_the_bounds_off() -> None:
+    """Gate, limits and guard have no switch; what shows the law without them is reached by `simulate` alone."""
+    unbounded = "LawAlone"
+    users = {str(path.relative_to(ROOT)) for path in ROOT.rglob("*.py") if unbounded in path.read_text()}
+    assert users == {"experiments/law_alone.py", "experiments/run.py"}
+    derived = [
+        f"{path.relative_to(ROOT)}: {node.name}"
+        for path in ROOT.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ClassDef)
+        and any(isinstance(base, ast.Name) and base.id in ("HandController", "Guard") for base in node.bases)
+    ]
+    assert derived == ["experiments/law_alone.py: LawAlone"]
+    things: dict[str, Callable[..., Any]] = {
+        "controller": HandController,
+        "step": HandController.step,
+        "loop": Loop,
+        "run": run_robot,
+        "guard": Guard,
+        "write": Guard.write,
+    }
+    given = {name: set(inspect.signature(thing).parameters) - {"self"} for name, thing in things.items()}
+    assert given == {
+        "controller": {"model", "law", "frame", "whole_steps", "ramp_s"},
+        "step": {"state", "v_c", "w_c", "dt", "now", "motion"},
+        "loop": {"model", "robot", "link", "clock", "rate"},
+        "run": {"robot", "listen", "rate", "parent"},
+        "guard": {"channels", "ramp_s"},
+        "write": {"wanted", "motion", "dt"},
+    }
+    assert set(Settings.__struct_fields__) == {
+        "law", "blend", "frame", "alpha", "beta", "q_l", "q_psi", "l_min", "l_max", "psi_min", "psi_max", "speed_scale",
+    }  # fmt: skip
+    source = (ROOT / "experiments" / "law_alone.py").read_text()
+    assert "overreach.robots" not in source

@@ -41,8 +41,8 @@ class Cockpit:
 
 
 @contextmanager
-def running_cockpit() -> Iterator[Cockpit]:
-    with robot() as (endpoint, side, observer):
+def running_cockpit(env: dict[str, str] | None = None) -> Iterator[Cockpit]:
+    with robot(env=env) as (endpoint, side, observer):
         with half("cockpit", "--connect", endpoint, "--no-browser", "--port", str(free_port())) as running:
             yield Cockpit(running.url(), running, side, observer, [], [])
 

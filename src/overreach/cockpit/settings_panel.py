@@ -31,7 +31,7 @@ class SettingsPanel:
         self._wanted: dict[str, Any] = {}
         with ui.element("section").classes("card").props('id=settings aria-label="Settings"'):
             ui.html("<h2>Settings</h2>", sanitize=False)
-            self._law = self._select("law", "Law", names(LAWS))
+            self._law = self._select("law", "Law", self._laws(self._shown.law))
             self._frame = self._toggle("frame", "Command frame", [frame.value for frame in Frame])
             self._blend = self._toggle("blend", "Blend", list(BLENDS))
             self._speed = self._slider("speed_scale", "Speed", 0.05, 1.0, 0.05, "×")
@@ -49,6 +49,11 @@ class SettingsPanel:
             self._bearing = self._range("psi_min", "psi_max", "Ψ  workspace in ψ", -1.5, 1.5, 0.05, "rad")
             ui.button("Defaults", on_click=self._defaults).props('flat dense no-caps id="defaults"')
         self.show(relay.settings)
+
+    @staticmethod
+    def _laws(in_force: str) -> list[str]:
+        """Return the laws to choose from: those installed here, and the one in force, which only the robot may have."""
+        return sorted({*names(LAWS), in_force})
 
     def _select(self, field: str, label: str, options: list[str]) -> ui.select:
         return ui.select(options, label=label, value=getattr(self._shown, field), on_change=self._handler(field)).props(
@@ -130,7 +135,7 @@ class SettingsPanel:
             return
         self._quiet = True
         self._shown = settings
-        self._law.value = settings.law
+        self._law.set_options(self._laws(settings.law), value=settings.law)
         self._frame.value = settings.frame
         self._blend.value = settings.blend
         for slider, value in (

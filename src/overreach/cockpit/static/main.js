@@ -26,6 +26,8 @@ const view = new View($("view"));
 const plots = new Plots([...document.querySelectorAll(".plot")]);
 const page = { robot: null, settings: null, state: null, stopping: false, heard: performance.now(), drawn: null };
 
+const silent = () => performance.now() - page.heard > SILENT_MS;
+
 const link = new Link({
   welcome(robot, settings) {
     page.robot = robot;
@@ -59,13 +61,13 @@ function configure(settings) {
 }
 
 view.afterDraw.push((state) => {
-  if (!state || !link.ready) return;
+  if (!state || !link.ready || silent()) return; // an old state that is drawn again is no news
   panel.show(state, Math.hypot(...handVelocity(state, page.robot)), link.operator);
   page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
 });
 view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
 setInterval(() => {
-  if (link.ready && performance.now() - page.heard > SILENT_MS) panel.down(page.state?.verdict === "ending" ? "The robot side has ended." : "The robot side is silent.");
+  if (link.ready && silent()) panel.down(page.state?.verdict === "ending" ? "The robot side has ended." : "The robot side is silent.");
 }, 100);
 
 async function ask(what) {
