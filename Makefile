@@ -1,5 +1,6 @@
 # make drive: drive the simulated robot. make test: everything that must hold. make venv: the environment alone.
 # make reproduce: the paper's figures and the comparison, as report/report.html. make bench: what things cost.
+# make mutate: whether a test fails for every small change of the gate (15 minutes; not part of make test).
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
@@ -8,7 +9,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Tests on real time have the machine to themselves; the others run side by side.
 REAL_TIME := tests/browser tests/faults tests/link tests/test_loop.py
 
-.PHONY: drive reproduce test venv lint types bench browser headline clean
+.PHONY: drive reproduce test venv lint types bench mutate browser headline clean
 
 drive: venv
 	@$(BIN)/overreach drive || [ $$? -eq 130 ]  # Ctrl-C is how it ends
@@ -33,6 +34,9 @@ bench: $(VENV)/.ready-dev browser
 	$(BIN)/overreach bench
 	$(BIN)/python -m benchmarks
 
+mutate: $(VENV)/.ready-mutate
+	$(BIN)/python -m tests.mutation
+
 headline: reproduce
 	$(BIN)/python docs/headline.py report
 
@@ -51,6 +55,10 @@ $(VENV)/.ready-all: $(VENV)/.ready
 
 $(VENV)/.ready-dev: $(VENV)/.ready-all
 	$(PIP) install -c constraints.txt -e '.[dev]'
+	@touch $@
+
+$(VENV)/.ready-mutate: $(VENV)/.ready-dev
+	$(PIP) install -c constraints.txt -e '.[mutate]'
 	@touch $@
 
 clean:

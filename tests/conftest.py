@@ -6,14 +6,13 @@ import os
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, settings
-from playwright.sync_api import Browser
 
-from overreach.experiments.reproduce import cost, run
-from tests.browser.chromium import chromium
-from tests.browser.install import find
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 settings.register_profile("overreach", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("overreach")
@@ -22,6 +21,8 @@ settings.load_profile("overreach")
 @pytest.fixture(scope="session")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What one whole run of `reproduce` wrote, with the timing cut short: many tests look at it."""
+    from overreach.experiments.reproduce import cost, run
+
     folder = tmp_path_factory.mktemp("reproduce") / "new" / "report"
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore", PendingDeprecationWarning)  # osqp's own
@@ -34,6 +35,9 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """One Chromium for all tests; without it they are skipped, and in CI they fail."""
+    from tests.browser.chromium import chromium
+    from tests.browser.install import find
+
     path = find()
     if path is None:
         message = "no Chromium: run `make browser`"

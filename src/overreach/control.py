@@ -140,6 +140,9 @@ class HandController:
     def _believe(self, state: RobotState | None, now: float) -> RobotState:
         """Return `state`, or the last one that was believed, with the fault latched, where it cannot be."""
         if state is None:
+            if self._feedback.stamp == -inf:
+                self.guard.latch("The robot has reported nothing yet.")
+                return self._believed
             state = self._believed
         positions = (complex(state.x_b, state.y_b), state.theta_b, *state.theta)
         wrong = self._feedback.check(state.t, positions, (state.v_b, state.w_b, *state.dtheta), now)

@@ -71,13 +71,13 @@ def test_an_honest_robot_is_believed(start: float) -> None:
 @pytest.mark.parametrize("k", range(4))
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_what_is_not_finite_is_named(k: int, bad: float) -> None:
-    """A position or rate that is not finite is a fault that says whose, and so is a time."""
+    """A position or rate that is not finite is a fault that says whose, and so is a time that is not finite."""
     robot = Robot()
     assert robot.tick() == ""
     assert robot.tick(positions={k: bad}) == f"The robot's feedback of {CHANNELS[k].moves} is not finite."
     assert robot.tick(rates={k: bad}) == f"The robot's feedback of {CHANNELS[k].name} is not finite."
     assert robot.tick(positions={0: complex(0.0, bad)}) == "The robot's feedback of the base's place is not finite."
-    assert robot.tick(stamp=math.nan) == "The robot's feedback has no finite time."
+    assert robot.tick(stamp=bad) == "The robot's feedback has no finite time."
     assert robot.tick() == ""
 
 
@@ -85,7 +85,7 @@ def test_finite_numbers_too_great_to_add_are_no_exception() -> None:
     """Readings of 1e308 are a fault, whatever their sum is; nothing is raised."""
     robot = Robot()
     robot.tick()
-    assert robot.tick(positions={1: 1e308, 2: 1e308}).startswith("The robot's feedback")
+    assert robot.tick(positions={1: 1e308, 2: 1e308}).startswith("The robot's feedback of theta_1 is out of range")
     assert robot.tick(positions={2: -1e308}) == "The robot's feedback of theta_1 is out of range: -1e+308 rad."
     assert robot.tick(rates={0: 1e308}) == "The robot's feedback of v_b is out of range: 1e+308 m/s."
 
@@ -128,9 +128,14 @@ def test_a_time_that_stands_still_is_frozen_after_100_ms(start: float) -> None:
     verdicts = [robot.tick(stamp=stamp) for _ in range(25)]
     first = next(k for k, verdict in enumerate(verdicts) if verdict)
     assert 20 <= first <= 21
-    assert verdicts[first] == "The robot's feedback is frozen: its time has not advanced for 100 ms."
+    assert verdicts[first] == "The robot's feedback is frozen: its time has not advanced for 0.1 s."
     assert robot.tick() == ""
-    assert [robot.tick(stamp=start) for _ in range(25)][-1] == verdicts[first]  # nor may it run backwards
+    again = [robot.tick(stamp=start + 0.0) for _ in range(25)]  # another number of the same value, each time
+    assert again[-1] == verdicts[first]
+    assert robot.tick() == ""
+    backwards = [robot.tick(stamp=start - 0.001 * k) for k in range(25)]
+    assert backwards[18] == ""
+    assert backwards[-1] == verdicts[first]  # nor may it run backwards
 
 
 def test_a_time_that_is_not_now() -> None:
@@ -145,7 +150,6 @@ def test_a_time_that_is_not_now() -> None:
     assert late.tick(stamp=late.t - 1.001) != ""
     older = Robot()
     assert older.tick(stamp=older.t - 1.001) == "The robot's feedback is of another time: -1 s from now."
-    assert Robot().tick(stamp=-math.inf) == "The robot has reported nothing yet."
 
 
 @pytest.mark.parametrize("k", range(4))
@@ -257,8 +261,10 @@ def test_what_was_in_force_is_of_the_reports_own_time() -> None:
         assert asked.in_force == (k - 1.0,)
     asked.move_to(17.5)
     assert asked.in_force == (7.0,)
+    before = asked.lagged
     asked.move_to(12.0)  # back in time nothing moves
     assert asked.in_force == (7.0,)
+    assert asked.lagged == before
 
 
 @given(st.lists(st.tuples(st.floats(0.001, 0.5), st.floats(-1, 1)), min_size=1, max_size=20), st.floats(0.0, 1.0))
@@ -279,3 +285,90 @@ def test_the_lag_is_first_order(steps: list[tuple[float, float]], late: float) -
     x = was + (x - was) * math.exp(-late / 0.3)
     assert whole.lagged[0] == pytest.approx(x, abs=1e-9)
     assert pieces.lagged[0] == pytest.approx(x, abs=1e-9)
+
+
+def exactly(*channels: Channel) -> Feedback:
+    return Feedback(channels)
+
+
+def test_each_threshold_itself_is_still_fine() -> None:
+    """What is just at a threshold, to the last bit, is no fault; these numbers are exact in binary."""
+    joint = Channel("rate", "joint", "rad", 3.0, 20.0, -1.0, 1.5, resolution=0.25, dead_band=0.25)
+    for place in (-1.0 - 0.05, 1.5 + 0.05):
+        assert exactly(joint).check(0.0, [place], [0.0], 0.0) == ""
+    for rate in (6.0, -6.0):
+        assert exactly(joint).check(0.0, [0.0], [rate], 0.0) == ""
+        assert "joint is out of range" in exactly(joint).check(0.0, [9.0], [rate], 0.0)  # and it is not the rate
+    assert exactly(joint).check(0.0, [0.0], [0.0], 1.0) == ""
+    assert exactly(joint).check(0.1, [0.0], [0.0], 0.0) == ""
+    frozen = exactly(joint)
+    assert frozen.check(0.0, [0.0], [0.0], 0.0) == ""
+    assert frozen.check(0.0, [0.0], [0.0], 0.1) == ""
+    assert "time has not advanced" in frozen.check(0.0, [0.0], [0.0], math.nextafter(0.1, 1.0))
+
+
+def test_not_following_begins_past_its_threshold_and_its_time() -> None:
+    """A rate that is off by the tolerance itself may be so for ever; one that is off by more, for 0.3 s."""
+    joint = Channel("rate", "joint", "rad", 3.0, 20.0)
+    at, past = exactly(joint), exactly(joint)
+    for k in range(50):
+        assert at.check(k / 10, [float(k)], [0.2], k / 10) == ""
+    assert past.check(0.0, [0.0], [0.25], 0.0) == ""
+    assert past.check(0.3, [1.0], [0.25], 0.3) == ""
+    assert "does not follow" in past.check(math.nextafter(0.3, 1.0), [2.0], [0.25], 0.3)
+
+
+def steadily(dead_band: float, rate: float) -> Feedback:
+    """Return a check that has seen `rate` asked for and done so long that its lag is over, to the last bit."""
+    feedback = exactly(Channel("rate", "joint", "rad", 3.0, 20.0, resolution=0.25, dead_band=dead_band))
+    feedback.asked.add((rate,), -64.0)
+    feedback.check(-65.0, [-1.0], [0.0], -65.0)
+    feedback.check(-0.25, [0.0], [rate], -0.25)
+    assert feedback.asked.lagged == feedback.asked.in_force == (rate,)
+    return feedback
+
+
+def test_frozen_begins_past_three_steps() -> None:
+    """A position that owes three steps of its resolution is not frozen; one that owes more is. Both directions."""
+    for rate in (0.5, -0.5):
+        feedback = steadily(0.25, rate)  # 0.125 a report: three steps of 0.25 after six
+        assert feedback.check(0.0, [1.0], [rate], 0.0) == ""
+        for k in range(1, 7):
+            assert feedback.check(k / 4, [1.0], [rate], k / 4) == ""
+        assert "joint does not change" in feedback.check(7 / 4, [1.0], [rate], 7 / 4)
+
+
+def test_frozen_begins_past_its_time() -> None:
+    """Whatever is owed, a position may stay for 0.1 s, to the last bit."""
+    feedback = steadily(0.25, 3.0)
+    feedback.asked.lagged = feedback.asked.in_force = (1e3,)
+    assert feedback.check(0.0, [1.0], [3.0], 0.0) == ""
+    assert feedback.check(0.1, [1.0], [3.0], 0.1) == ""
+    feedback = steadily(0.25, 3.0)
+    assert feedback.check(0.0, [1.0], [3.0], 0.0) == ""
+    assert feedback.check(0.25, [1.0], [3.0], 0.25) == ""
+    assert "joint does not change" in feedback.check(0.375, [1.0], [3.0], 0.375)
+
+
+def test_at_the_edge_of_its_dead_band_a_robot_may_stand_still() -> None:
+    """Asked for 1.5 dead bands to the last bit, it may stand still for ever."""
+    feedback = steadily(0.25, 0.375)
+    for k in range(200):
+        assert feedback.check(k / 4, [1.0], [0.375], k / 4) == ""
+
+
+def test_a_change_of_any_kind_pays_what_is_owed() -> None:
+    """A position that moves, however little and either way, owes nothing any more."""
+    feedback = steadily(0.25, 0.5)
+    for k in range(100):
+        assert feedback.check(k / 4, [1.0 + 1e-15 * (k // 4 % 2)], [0.5], k / 4) == ""
+
+
+def test_reports_must_have_every_channel() -> None:
+    """A report with too few numbers is a mistake of the caller's, and raises."""
+    with pytest.raises(IndexError):
+        Robot().feedback.check(1.0, [0.0j, 0.0, 0.0], [0.0] * 4, 1.0)
+    short = Asked(2)
+    short.add((1.0,), 0.0)
+    with pytest.raises(ValueError, match="zip"):
+        short.move_to(1.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import random
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given, settings
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from overreach.errors import SetupError
 from overreach.gate.gate import LOST_S, STALE_S, Gate
 from overreach.gate.limits import Limits
-from overreach.types import Stick, Verdict
+from overreach.types import Motion, Stick, Verdict
 
 DT = 0.005
 ME, OTHER = 11, 22
@@ -73,6 +74,181 @@ def moving(start: float) -> Bench:
     assert bench.drive(0.5) is Verdict.MOVING
     assert bench.v_c == 0.4
     return bench
+
+
+def driving(start: float = 123.4) -> Bench:
+    """Return a bench whose robot moves both ways at once."""
+    bench = Bench(start)
+    bench.arm()
+    bench.press()
+    for _ in range(200):
+        bench.tick(bench.stick(v_c=0.3, w_c=-0.2))
+    assert bench.out[-1] == (0.3, -0.2)
+    return bench
+
+
+WAYS_TO_REST: dict[str, tuple[Callable[[Bench], object], Verdict]] = {
+    "stop": (lambda bench: bench.gate.latch.stop(), Verdict.STOPPED),
+    "fault": (lambda bench: bench.gate.latch.fail("why"), Verdict.FAULT),
+    "disarm": (lambda bench: bench.gate.latch.disarm(), Verdict.DISARMED),
+    "spent": (lambda bench: bench.gate.latch.spend(bench.grip), Verdict.REGRIP),
+    "other": (lambda bench: bench.gate.latch.arm(OTHER, 0), Verdict.RELEASED),
+}
+
+
+@pytest.mark.parametrize("way", WAYS_TO_REST)
+def test_every_way_to_rest_zeroes_both_parts(way: str) -> None:
+    """Stop, fault, disarm, a spent press, another operator: both parts ramp to exactly zero, along their direction."""
+    act, verdict = WAYS_TO_REST[way]
+    bench = driving()
+    act(bench)
+    for k in range(60):
+        bench.gate.accept(bench.stick(v_c=0.3, w_c=-0.2), bench.now)
+        gated = bench.gate.tick(bench.now, DT)
+        bench.now += DT
+        assert gated.v_c * 0.2 == pytest.approx(-gated.w_c * 0.3)
+        assert gated.motion is (Motion.NONE if gated.v_c == 0.0 else Motion.RAMPING)
+        if way != "other":
+            assert gated.verdict is verdict
+        assert (gated.v_c, gated.w_c) == (0.0, 0.0) or k < 24
+    assert bench.gate.resting
+
+
+def test_silence_zeroes_both_parts() -> None:
+    """Silence of 200 ms, to the last bit, is none; past it both parts ramp (STALE), and past 1 s too (LOST)."""
+    for age, verdict in ((0.2, Verdict.MOVING), (1.0, Verdict.STALE)):
+        for more, told in ((0.0, verdict), (1e-12, Verdict.STALE if age == 0.2 else Verdict.LOST)):
+            gate = Gate()
+            gate.arm(ME, 0, 0.0)
+            gate.accept(Stick(ME, 1, 1, True, 0.3, -0.2), 0.0)
+            for _ in range(100):
+                gate.tick(0.0, DT)
+            assert gate.tick(age + more, DT).verdict is (told if told is not Verdict.STALE else Verdict.STALE)
+            gated = gate.tick(age + more, DT)
+            assert gated.motion is (Motion.ALLOWED if told is Verdict.MOVING else Motion.RAMPING)
+            for _ in range(60):
+                gated = gate.tick(age + more, DT)
+            assert ((gated.v_c, gated.w_c) == (0.3, -0.2)) is (told is Verdict.MOVING)
+            if told is not Verdict.MOVING:
+                assert (gated.v_c, gated.w_c) == (0.0, 0.0)
+                assert gated.motion is Motion.NONE
+
+
+def test_a_loss_from_full_speed_spends_the_press_and_zeroes() -> None:
+    """A signal that is lost for more than a second at once, in motion: both parts ramp, LOST; its return is REGRIP."""
+    bench = driving()
+    bench.now += 1.5
+    assert bench.tick() is Verdict.LOST
+    assert 0.0 < bench.out[-1][0] < 0.3
+    assert bench.gate.latch.spent_grip == bench.grip
+    for _ in range(60):
+        bench.tick()
+    assert bench.out[-1] == (0.0, 0.0)
+    assert bench.tick(bench.stick(v_c=0.3, w_c=-0.2)) is Verdict.REGRIP
+
+
+def test_turning_alone_is_motion() -> None:
+    """A command that only turns is motion: not at rest, and a gap while it ramps does not spend the press."""
+    bench = Bench(50.0)
+    bench.arm()
+    bench.press()
+    gated = bench.gate.tick(bench.now, DT)
+    assert gated.motion is Motion.NONE
+    for _ in range(100):
+        bench.gate.accept(bench.stick(v_c=0.0, w_c=0.4), bench.now)
+        gated = bench.gate.tick(bench.now, DT)
+        bench.now += DT
+    assert (gated.v_c, gated.w_c, gated.motion) == (0.0, 0.4, Motion.ALLOWED)
+    assert not bench.gate.resting
+    bench.now += 0.21
+    assert bench.tick() is Verdict.STALE
+    assert bench.out[-1][1] > 0.0
+    assert bench.gate.latch.spent_grip < bench.grip
+
+
+def test_held_at_its_centre_is_no_motion() -> None:
+    """A stick that is held but not tilted moves nothing, and what was moving ramps down."""
+    bench = driving()
+    motions = []
+    for _ in range(60):
+        bench.gate.accept(bench.stick(v_c=0.0, w_c=0.0), bench.now)
+        motions.append(bench.gate.tick(bench.now, DT).motion)
+        bench.now += DT
+    assert motions[0] is Motion.RAMPING
+    assert motions[-1] is Motion.NONE
+
+
+def test_a_refusal_is_told_for_half_a_second() -> None:
+    """A refusal is told for 0.5 s, where nothing weightier is; it never hides what is."""
+    gate = Gate()
+    gate.arm(ME, 0, 0.0)
+    assert gate.tick(0.0, DT).verdict is Verdict.RELEASED
+    gate.accept(Stick(ME, 1, 0, False, math.nan, 0.0), 0.0)
+    assert gate.refused == 1
+    assert gate.tick(0.0, DT).verdict is Verdict.NOT_FINITE
+    assert gate.tick(math.nextafter(0.5, 0.0), DT).verdict is Verdict.NOT_FINITE
+    assert gate.tick(0.5, DT).verdict is Verdict.RELEASED
+    gate.accept(Stick(ME, 1, 0, False, math.nan, 0.0), 1.0)
+    gate.latch.stop()
+    assert gate.tick(1.0, DT).verdict is Verdict.STOPPED
+
+
+def test_a_second_operator_waits_for_a_second_of_silence() -> None:
+    """Another may arm once the robot rests, in both parts, and the first has been silent for 1 s, to the last bit."""
+    gate = Gate()
+    gate.arm(ME, 0, 0.0)
+    gate.accept(Stick(ME, 1, 1, False, 0.0, 0.0), 0.0)
+    gate.tick(0.0, DT)
+    assert gate.arm(OTHER, 0, 1.0) is Verdict.OTHER_OPERATOR
+    assert gate.arm(ME, 0, 1.0) is None
+    assert gate.arm(OTHER, 0, math.nextafter(1.0, 2.0)) is None
+    assert gate.latch.operator == OTHER
+    turning = Gate()
+    turning.arm(ME, 0, 0.0)
+    turning.accept(Stick(ME, 1, 1, True, 0.0, 0.4), 0.0)
+    turning.tick(0.0, DT)
+    assert turning.arm(OTHER, 0, 9.0) is Verdict.OTHER_OPERATOR
+    assert Gate().arm(OTHER, 0, 0.0) is None
+
+
+def test_no_more_than_64_operators_are_remembered() -> None:
+    """The last 64 operators' messages are remembered, and no more: the 65th before may begin anew."""
+    gate = Gate()
+    for operator in range(1, 66):
+        gate.accept(Stick(operator, 5, 1, False, 0.0, 0.0), 0.0)
+    assert gate.accept(Stick(2, 5, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(Stick(1, 5, 1, False, 0.0, 0.0), 0.0) is None
+    assert gate.accept(Stick(2, 5, 1, False, 0.0, 0.0), 0.0) is None  # the oldest, for the first came back
+    assert gate.accept(Stick(60, 4, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    for operator in range(200, 263):
+        gate.accept(Stick(2, operator, 1, False, 0.0, 0.0), 0.0)  # who is heard stays
+        gate.accept(Stick(operator, 5, 1, False, 0.0, 0.0), 0.0)
+    assert gate.accept(Stick(2, 262, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+
+
+def test_what_a_new_gate_knows() -> None:
+    """At the start: no message accepted, none refused, at rest, full speed scale."""
+    gate = Gate()
+    assert (gate.seq, gate.refused, gate.resting, gate.speed_scale) == (0, 0, True, 1.0)
+    gate.arm(ME, 0, 0.0)
+    assert gate.accept(Stick(ME, 1, 1, True, 0.1, 0.0), 0.0) is None
+    assert gate.seq == 1
+    assert gate.accept(Stick(ME, 1, 1, True, 0.1, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    gate.set_speed_scale(1.0)
+    assert gate.tick(0.0, DT).v_c == pytest.approx(2.5 * DT)
+
+
+def test_speed_and_ramp_are_told() -> None:
+    """A command past the speed limit says SPEED and its scale, one that ramps ACCELERATION, else MOVING."""
+    gate = Gate()
+    gate.arm(ME, 0, 0.0)
+    gate.accept(Stick(ME, 1, 1, True, 0.8, 0.0), 0.0)
+    gated = gate.tick(0.0, 1.0)
+    assert (gated.verdict, gated.scale, gated.v_c) == (Verdict.SPEED, 0.5, 0.4)
+    gate.accept(Stick(ME, 2, 1, True, -0.4, 0.0), 0.0)
+    assert gate.tick(0.0, DT).verdict is Verdict.ACCELERATION
+    gated = gate.tick(0.0, 1.0)
+    assert (gated.verdict, gated.scale, gated.v_c) == (Verdict.MOVING, 1.0, -0.4)
 
 
 @given(starts)
@@ -266,6 +442,39 @@ def test_a_jump_is_a_ramp(start: float, wishes: list[tuple[float, float, bool]])
         assert abs(w1) <= LIMITS.w_c * (1 + 1e-8)
 
 
+@given(starts)
+def test_stop_is_latched(start: float) -> None:
+    """A stop brings the command to zero, arming does not lift it, reset lifts it and moves nothing."""
+    bench = moving(start)
+    bench.gate.latch.stop()
+    assert bench.drive(RAMP_S + DT) is Verdict.STOPPED
+    assert bench.v_c == 0.0
+    assert bench.arm() is Verdict.STOPPED
+    assert bench.drive(0.3) is Verdict.STOPPED
+    bench.gate.latch.reset()
+    assert bench.drive(0.3) is Verdict.DISARMED
+    assert bench.v_c == 0.0
+
+
+@given(starts, st.floats(0.05, 1.0))
+def test_speed_scale_scales_the_whole_command(start: float, scale: float) -> None:
+    """The speed scale shrinks both parts of the command alike."""
+    bench = Bench(start)
+    bench.gate.set_speed_scale(scale)
+    bench.arm()
+    bench.press()
+    for _ in range(200):
+        bench.tick(bench.stick(v_c=0.4, w_c=-0.2))
+    assert bench.out[-1] == pytest.approx((0.4 * scale, -0.2 * scale))
+
+
+@pytest.mark.parametrize("bad", [0.0, -0.5, 1.01, math.nan])
+def test_speed_scale_is_checked(bad: float) -> None:
+    """A speed scale that would stop, reverse or speed up the robot is refused."""
+    with pytest.raises(SetupError, match="speed scale"):
+        Gate().set_speed_scale(bad)
+
+
 def test_no_way_from_stopped_to_moving_but_reset_arm_release_press() -> None:
     """Of all sequences of up to 6 acts after a stop, only those with reset, arm and a new press, in order, move."""
     acts = ("reset", "arm", "press", "release", "disarm", "stop")
@@ -306,36 +515,3 @@ def test_no_way_from_stopped_to_moving_but_reset_arm_release_press() -> None:
             assert not went or may == "moving", sequence
             moved += went
     assert moved > 100
-
-
-@given(starts)
-def test_stop_is_latched(start: float) -> None:
-    """A stop brings the command to zero, arming does not lift it, reset lifts it and moves nothing."""
-    bench = moving(start)
-    bench.gate.latch.stop()
-    assert bench.drive(RAMP_S + DT) is Verdict.STOPPED
-    assert bench.v_c == 0.0
-    assert bench.arm() is Verdict.STOPPED
-    assert bench.drive(0.3) is Verdict.STOPPED
-    bench.gate.latch.reset()
-    assert bench.drive(0.3) is Verdict.DISARMED
-    assert bench.v_c == 0.0
-
-
-@given(starts, st.floats(0.05, 1.0))
-def test_speed_scale_scales_the_whole_command(start: float, scale: float) -> None:
-    """The speed scale shrinks both parts of the command alike."""
-    bench = Bench(start)
-    bench.gate.set_speed_scale(scale)
-    bench.arm()
-    bench.press()
-    for _ in range(200):
-        bench.tick(bench.stick(v_c=0.4, w_c=-0.2))
-    assert bench.out[-1] == pytest.approx((0.4 * scale, -0.2 * scale))
-
-
-@pytest.mark.parametrize("bad", [0.0, -0.5, 1.01, math.nan])
-def test_speed_scale_is_checked(bad: float) -> None:
-    """A speed scale that would stop, reverse or speed up the robot is refused."""
-    with pytest.raises(SetupError, match="speed scale"):
-        Gate().set_speed_scale(bad)

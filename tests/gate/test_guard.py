@@ -252,3 +252,12 @@ def test_writes_change_from_one_to_the_next() -> None:
         assert guard.write((rates[-1], 0.0, 0.0, 0.0), Motion.ALLOWED, dt)[0] == pytest.approx(rates[-1])
     assert guard.fault == ""
     assert all(later > earlier for earlier, later in pairwise(rates))
+
+
+def test_every_channel_must_be_there() -> None:
+    """Rates for too few channels are a mistake of the caller's, and raise; nothing is written."""
+    for motion in (Motion.ALLOWED, Motion.RAMPING):
+        guard = Guard(CHANNELS)
+        with pytest.raises(ValueError, match="zip"):
+            guard.write((0.0, 0.0), motion, DT)
+        assert guard.written == ZERO

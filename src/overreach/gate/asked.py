@@ -8,8 +8,6 @@ from typing import final
 
 LAG_S = 0.3
 """Time constant [s] of the slowest robot that still counts as following."""
-KEPT = 4096
-"""Requests that are kept for a report that has not come yet."""
 
 Rates = tuple[float, ...]
 
@@ -28,12 +26,12 @@ class Asked:
     def restart(self) -> None:
         """Forget the past: the robot is at rest."""
         self.in_force = self.lagged = self._last = self._zero
-        self._later: deque[tuple[float, Rates]] = deque(maxlen=KEPT)
-        self._t = -math.inf
+        self._later: deque[tuple[float, Rates]] = deque()
+        self._t: float | None = None
 
     def reset(self) -> None:
         """Keep what was asked for; the next report may be of any time."""
-        self._t = -math.inf
+        self._t = None
 
     def add(self, rates: Rates, t: float) -> None:
         """Note that `rates` are asked for from `t` [s] on."""
@@ -50,11 +48,11 @@ class Asked:
         self._lag_to(t)
 
     def _lag_to(self, t: float) -> None:
-        if t <= self._t:
-            return
-        if self._t > -math.inf and self.lagged != self.in_force:
-            fade = math.exp((self._t - t) / LAG_S)
+        passed = 0.0 if self._t is None else t - self._t
+        if passed > 0.0:
+            fade = math.exp(-passed / LAG_S)
             self.lagged = tuple(
                 goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)
             )
-        self._t = t
+        if self._t is None or passed > 0.0:
+            self._t = t

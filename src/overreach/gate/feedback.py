@@ -49,10 +49,9 @@ class Feedback:
     def __init__(self, channels: Sequence[Channel]) -> None:
         self._channels = tuple(channels)
         self.asked = Asked(len(self._channels))
-        self._ranges = [
-            (k, channel.lower - BEYOND[channel.unit], channel.upper + BEYOND[channel.unit])
-            for k, channel in enumerate(self._channels)
-            if math.isfinite(channel.lower) or math.isfinite(channel.upper)
+        self._range = [
+            (channel.lower - BEYOND[channel.unit], channel.upper + BEYOND[channel.unit], TOO_FAST * channel.rate_max)
+            for channel in self._channels
         ]
         self._follow = [
             (TOLERANCE[channel.unit], SLOWEST * channel.dead_band, FROZEN_STEPS * channel.resolution)
@@ -73,8 +72,8 @@ class Feedback:
         """Time of the newest report that was believed [s]."""
         self._came_at = math.inf
         self._positions: list[Position | None] = [None] * n
-        self._changed_at = [0.0] * n
-        self._owed = [0.0] * n
+        self._changed_at = [math.inf] * n
+        self._owed = [math.inf] * n
         self._off_since = [math.inf] * n
 
     def check(self, t: float, positions: Sequence[Position], rates: Sequence[float], now: float) -> str:
@@ -82,23 +81,18 @@ class Feedback:
 
         positions [m, rad] and rates [m/s, rad/s]: one a channel.
         """
-        if t == -math.inf:
-            return "The robot has reported nothing yet."
-        if not cmath.isfinite(sum(positions, t + sum(rates))):
-            return self._not_finite(t, positions, rates)
-        for k, least, most in self._ranges:
-            if not least <= positions[k].real <= most:
-                return self._out_of_range(self._channels[k].moves, positions[k].real, self._channels[k].unit)
-        for k, rate in enumerate(rates):
-            if abs(rate) > TOO_FAST * self._channels[k].rate_max:
-                return self._out_of_range(self._channels[k].name, rate, f"{self._channels[k].unit}/s")
+        if not math.isfinite(t):
+            return "The robot's feedback has no finite time."
+        for k, (least, most, fastest) in enumerate(self._range):
+            if not (least <= positions[k].real <= most and abs(rates[k]) <= fastest and cmath.isfinite(positions[k])):
+                return self._why_not(k, positions[k], rates[k])
         if t <= self.stamp:
             if now - self._came_at > FROZEN_S:
-                return f"The robot's feedback is frozen: its time has not advanced for {FROZEN_S * 1000:.0f} ms."
+                return f"The robot's feedback is frozen: its time has not advanced for {FROZEN_S:g} s."
             return ""
         if not -AHEAD_S <= now - t <= OLD_S:
             return f"The robot's feedback is of another time: {t - now:+.3g} s from now."
-        passed = 0.0 if self.stamp == -math.inf else t - self.stamp
+        passed = t - self.stamp
         self.stamp = t
         self._came_at = now
         self.asked.move_to(t)
@@ -109,9 +103,8 @@ class Feedback:
         asked, lagged = self.asked.in_force, self.asked.lagged
         for k, (tolerance, slowest, owed) in enumerate(self._follow):
             at_once, slowly, rate = asked[k], lagged[k], rates[k]
-            low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
-            off = low - rate if rate < low else rate - high
-            if off > tolerance and off > TOLERANCE_PART * max(-low, high):
+            off = max(min(at_once, slowly) - rate, rate - max(at_once, slowly))
+            if off > max(tolerance, TOLERANCE_PART * max(abs(at_once), abs(slowly))):
                 self._off_since[k] = min(self._off_since[k], t)
                 if t - self._off_since[k] > FOLLOW_S:
                     return self._not_following(k, rate)
@@ -121,27 +114,22 @@ class Feedback:
                 self._positions[k] = positions[k]
                 self._changed_at[k] = t
                 self._owed[k] = 0.0
-            elif abs(at_once) > slowest and at_once * slowly > 0.0:
+            elif abs(at_once) > slowest:
                 self._owed[k] += min(abs(at_once), abs(slowly)) * passed
                 if self._owed[k] > owed and t - self._changed_at[k] > FROZEN_S:
                     moves = self._channels[k].moves
                     return f"The robot's feedback is frozen: {moves} does not change, though it was asked to."
         return ""
 
-    def _not_finite(self, t: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
-        for channel, position, rate in zip(self._channels, positions, rates, strict=True):
-            for name, value in ((channel.moves, position), (channel.name, rate)):
-                if not cmath.isfinite(value):
-                    return f"The robot's feedback of {name} is not finite."
-        return (
-            "The robot's feedback has no finite time."
-            if not math.isfinite(t)
-            else "The robot's feedback is not finite."
-        )
-
-    @staticmethod
-    def _out_of_range(name: str, value: float, unit: str) -> str:
-        return f"The robot's feedback of {name} is out of range: {value:.4g} {unit}."
+    def _why_not(self, k: int, position: Position, rate: float) -> str:
+        channel = self._channels[k]
+        if not cmath.isfinite(position):
+            return f"The robot's feedback of {channel.moves} is not finite."
+        if not math.isfinite(rate):
+            return f"The robot's feedback of {channel.name} is not finite."
+        if abs(rate) > TOO_FAST * channel.rate_max:
+            return f"The robot's feedback of {channel.name} is out of range: {rate:.4g} {channel.unit}/s."
+        return f"The robot's feedback of {channel.moves} is out of range: {position.real:.4g} {channel.unit}."
 
     def _not_following(self, k: int, rate: float) -> str:
         channel = self._channels[k]
