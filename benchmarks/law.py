@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import cycle
 
 from benchmarks.measure import Promise, in_turns, promise
 from overreach.arm.step import planar_step
-from overreach.control import HandController
+from overreach.bench.replay import Replay
 from overreach.law.authority import exact, paper
 from overreach.law.blend import Blend, smoothstep, tanh
 from overreach.law.laws import exact as make_exact
-from overreach.model.planar import load_planar
-from overreach.robots.kinematic import KinematicRobot
 
 MOUNT = (0.0, 0.0, 0.0)
 OFFSET = (0.1, 0.05, 0.1)
@@ -26,9 +25,8 @@ def run() -> Iterator[Promise]:
     """Measure the law in its three regions: the arm alone, blending, the base alone."""
     soft, paper_blend = smoothstep(), tanh()
     law = make_exact()
-    robot = KinematicRobot(load_planar())
-    controller = HandController(robot.model, law)
-    state = robot.read(0.0)
+    drive = Replay(law, 250)
+    ticks = cycle(drive.ticks)
 
     def law_call(l: float, blend: Blend, mount: tuple[float, float, float]) -> Callable[[], object]:
         return partial(exact, l, 0.3, 0.3, 0.1, blend.rise, limits(blend), mount)
@@ -48,7 +46,7 @@ def run() -> Iterator[Promise]:
             "full planar step, blending (tanh)": step_call(1.07, paper_blend, MOUNT),
             "full planar step, blending (tanh), shoulder off centre": step_call(1.07, paper_blend, OFFSET),
             "exact().split, record and all": partial(law.split, 0.86, 0.3, 0.3, 0.1),
-            "HandController.step, limits and all": partial(controller.step, state, 0.3, 0.1, 0.005),
+            "HandController.step, limits, guard and all": lambda: drive.step(*next(ticks)),
         }
     )
     for name, values in took.items():

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 settings.register_profile("overreach", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# For mutants any counterexample will do: it need not be the smallest.
+settings.register_profile("mutate", settings.get_profile("overreach"), phases=[Phase.explicit, Phase.generate])
 settings.load_profile("overreach")
 
 

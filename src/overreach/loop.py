@@ -137,17 +137,18 @@ class Loop:
 
     def _come_to_rest(self, dt: float) -> None:
         """Ramp to zero by the guard alone, then stop. Whoever watches is told; nobody can hold it up."""
-        guard = self.controller.guard
+        gated = Gated(0.0, 0.0, 1.0, Motion.NONE, Verdict.ENDING)
+        deadline = self._clock.now()
+        moving = True
         try:
-            deadline = self._clock.now()
-            while any(guard.written):
+            while moving:
+                moving = any(self.controller.guard.written)
                 deadline += dt
                 self._clock.sleep_until(deadline)
                 step = self.controller.ramp(dt)
                 self._write(step, deadline)
                 self._tick += 1
                 with contextlib.suppress(Exception):
-                    gated = Gated(0.0, 0.0, 1.0, Motion.NONE, Verdict.ENDING)
                     self._publish(deadline, gated, step)
         finally:
             self._robot.stop(self._clock.now())

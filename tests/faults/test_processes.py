@@ -61,6 +61,7 @@ def test_robot_side_ends_in_order(how: signal.Signals) -> None:
     with robot() as (_, running, observer):
         Driver(observer.link).arm()
         assert running.end(how) == 0
+        until(lambda: observer.now.verdict == "ending", what="the word of its end")
 
 
 def test_cockpit_outlives_its_robot_side_and_finds_it_again() -> None:

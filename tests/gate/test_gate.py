@@ -160,6 +160,9 @@ def test_turning_alone_is_motion() -> None:
         bench.now += DT
     assert (gated.v_c, gated.w_c, gated.motion) == (0.0, 0.4, Motion.ALLOWED)
     assert not bench.gate.resting
+    back = moving(50.0)
+    back.drive(0.5, v_c=-0.4)
+    assert not back.gate.resting
     bench.now += 0.21
     assert bench.tick() is Verdict.STALE
     assert bench.out[-1][1] > 0.0
@@ -203,6 +206,11 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     assert gate.arm(ME, 0, 1.0) is None
     assert gate.arm(OTHER, 0, math.nextafter(1.0, 2.0)) is None
     assert gate.latch.operator == OTHER
+    assert gate.seq == 0  # nothing of the first's counts
+    gate.accept(Stick(OTHER, 1, 1, False, 0.0, 0.0), 2.0)
+    assert gate.seq == 1
+    assert gate.arm(ME, 0, 9.0) is None
+    assert gate.seq == 0
     turning = Gate()
     turning.arm(ME, 0, 0.0)
     turning.accept(Stick(ME, 1, 1, True, 0.0, 0.4), 0.0)

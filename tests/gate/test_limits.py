@@ -82,6 +82,8 @@ def test_clamp_is_the_last_word(wanted: float, happening: float, change: float) 
 
 def test_limits_are_checked() -> None:
     """A limit that is not a finite number above 0 is refused."""
+    with pytest.raises(SetupError, match="w_c"):
+        Limits(w_c=-0.1)
     with pytest.raises(SetupError, match="dv_c"):
         Limits(dv_c=0.0)
     with pytest.raises(SetupError, match="v_c"):
@@ -138,8 +140,11 @@ def test_each_limit_by_itself(sign: float, k: int) -> None:
         return tuple(value if i == k else 0.0 for i in range(2))
 
     assert feasible_scale(at(2.0 * sign), at(1.0 * sign), (1.0, 1.0), (9.0, 9.0)) == (0.5, Verdict.SPEED)
+    just = (1.0 + 1e-9) * sign
+    assert feasible_scale(at(just), at(just), (1.0, 1.0), (9.0, 9.0)) == (1.0, Verdict.MOVING)
     got = feasible_scale(at(0.5 * sign), at(0.125 * sign), (1.0, 1.0), (0.25, 0.25))
     assert got == (0.75, Verdict.ACCELERATION)
+    assert feasible_scale(at(1.0), at(0.0), (2.0, 2.0), (1.0 - 1e-9,) * 2) == (1.0 - 1e-9, Verdict.MOVING)
     # Too fast to be reached in one period: as near as can be.
     assert feasible_scale(at(0.5 * sign), at(-1.0 * sign), (1.0, 1.0), (0.25, 0.25)) == (0.0, Verdict.ACCELERATION)
     assert feasible_scale(at(0.5 * sign), at(1.0 * sign), (1.0, 1.0), (0.25, 0.25)) == (1.0, Verdict.ACCELERATION)

@@ -14,7 +14,7 @@ from overreach.baselines.settings import SPARSE
 from overreach.baselines.solver import DIRECT, SOLVERS
 from overreach.baselines.weighted import weighted
 from overreach.bench.measure import Candidate
-from overreach.control import HandController
+from overreach.bench.replay import Replay
 from overreach.experiments.run import Row, simulate
 from overreach.law.authority import exact, paper
 from overreach.law.blend import smoothstep, tanh
@@ -23,7 +23,6 @@ from overreach.law.laws import constants
 from overreach.law.laws import exact as exact_law
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
-from overreach.types import RobotState
 
 SLOW_EVERY = 5
 """Solvers that take half a millisecond run in every fifth round."""
@@ -87,9 +86,8 @@ def steps(rows: list[Row], fast: bool) -> list[Candidate]:
 
         found.append(Candidate(COMPILED, compile_step(), hand_states))
         found.append(Candidate("step exact, compiled: empty call", empty_call(), hand_states))
-    controller = HandController(robot, exact_law())
-    measured = [(_measured(row), row.v_c, row.w_c, 0.005) for row in rows]
-    found.append(Candidate("step exact, in the loop: limits, records and all", controller.step, measured))
+    drive = Replay(exact_law(), len(rows))
+    found.append(Candidate("step exact, in the loop: limits, guard, records and all", drive.step, drive.ticks))
     polar_states = [(row.theta_1, row.theta_2, row.v_c, row.w_c) for row in rows]
     his = (steep.rise, *constants(robot.workspace, steep, robot.mount), *robot.arm.links)
     found.append(Candidate("step paper, plain", polar_step, [(*state, *his) for state in polar_states]))
@@ -98,12 +96,6 @@ def steps(rows: list[Row], fast: bool) -> list[Candidate]:
         for name in SOLVERS
     ]
     return found
-
-
-def _measured(row: Row) -> RobotState:
-    """Return what the robot would report."""
-    joints = (row.theta_1, row.theta_2)
-    return RobotState(row.t, row.x_b, row.y_b, row.theta_b, row.v_b, row.w_b, joints, (0.0, 0.0))
 
 
 def parts_of_qp(rows: list[Row], name: str = DIRECT) -> list[Candidate]:

@@ -74,11 +74,11 @@ def feasible_scale(
     verdict = Verdict.MOVING
     rest = apart or (0.0,) * len(wanted)
     for rate, own, most in zip(wanted, rest, fastest, strict=True):
-        along = own if rate > 0.0 else -own
+        along = math.copysign(1.0, rate) * own
         if rate != 0.0 and abs(rate) * scale + along > most * (1.0 + SLACK):
             scale = max(0.0, (most - along) / abs(rate))
             verdict = Verdict.SPEED
-    low, high = 0.0, scale
+    low, high = -math.inf, scale
     for rate, own, was, step in zip(wanted, rest, happening, change, strict=True):
         if abs(rate) > SLACK:
             one, other = (was - own - step) / rate, (was - own + step) / rate
@@ -86,9 +86,10 @@ def feasible_scale(
             high = min(high, max(one, other))
     if high < scale - SLACK:
         verdict = Verdict.ACCELERATION
-    if low <= high:
-        return max(0.0, high), verdict
-    return max(0.0, min(1.0, 0.5 * (low + high))), Verdict.ACCELERATION
+    if low > high:
+        high = 0.5 * (low + high)
+        verdict = Verdict.ACCELERATION
+    return max(0.0, min(1.0, high)), verdict
 
 
 def clamp_change(wanted: float, happening: float, change: float) -> float:

@@ -77,13 +77,16 @@ export class Panel {
   say(kind, word, reason) {
     if ($("verdict").dataset.kind !== kind) $("verdict").dataset.kind = kind;
     put($("verdict-word"), word);
+    if ($("verdict-reason").textContent === reason) return;
     put($("verdict-reason"), reason);
+    $("verdict").title = reason; // whole, where the window is too narrow for it
   }
 
   down(reason) {
     this.say("stop", "No connection", reason);
     for (const id of ["arm", "reset"]) $(id).disabled = true;
     $("pad").dataset.armed = false;
+    $("pad-hint").hidden = true;
   }
 
   // In the frames of base and world the two parts of the command are the x and y velocity.
