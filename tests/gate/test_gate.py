@@ -209,6 +209,7 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     assert gate.seq == 0  # nothing of the first's counts
     gate.accept(Stick(OTHER, 1, 1, False, 0.0, 0.0), 2.0)
     assert gate.seq == 1
+    assert gate.arm(ME, 0, 2.5) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 9.0) is None
     assert gate.seq == 0
     turning = Gate()
@@ -217,6 +218,29 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     turning.tick(0.0, DT)
     assert turning.arm(OTHER, 0, 9.0) is Verdict.OTHER_OPERATOR
     assert Gate().arm(OTHER, 0, 0.0) is None
+    silent = Gate()
+    silent.arm(ME, 0, 0.0)  # and was never heard
+    assert silent.arm(OTHER, 0, 0.0) is None
+
+
+def test_numbers_of_messages_and_presses_begin_at_one() -> None:
+    """Message 0 is none, and so is press 0 or any that was spent, whatever number the robot is armed with."""
+    gate = Gate()
+    gate.arm(ME, -5, 0.0)
+    assert gate.accept(Stick(ME, 0, 1, True, 0.4, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(Stick(ME, 1, 0, True, 0.4, 0.0), 0.0) is None
+    assert gate.tick(0.6, DT).verdict is Verdict.STALE
+    gate.accept(Stick(ME, 2, 0, True, 0.4, 0.0), 1.0)
+    assert gate.tick(1.0, DT).verdict is Verdict.REGRIP
+    gate.latch.spend(3)
+    gate.accept(Stick(ME, 3, 2, True, 0.4, 0.0), 1.0)
+    assert gate.tick(1.0, DT).verdict is Verdict.REGRIP
+
+
+def test_what_the_gate_says_cannot_be_changed() -> None:
+    """What the gate let through is a record: nobody on the way can alter it."""
+    with pytest.raises(AttributeError):
+        Gate().tick(0.0, DT).v_c = 1.0  # type: ignore[misc]
 
 
 def test_no_more_than_64_operators_are_remembered() -> None:

@@ -55,7 +55,7 @@ def keeps_bounds(before: tuple[float, ...], after: tuple[float, ...], dt: float)
 def test_whatever_is_wanted_what_is_written_is_bounded(seed: int, dt: float) -> None:
     """For any stream of wanted rates, NaN, infinity and 1e308 included, any motion and resets at any time: bounded."""
     chance = random.Random(seed)
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     for _ in range(200):
         near = [
             was + chance.uniform(-1.2, 1.2) * change * dt for was, change in zip(guard.written, CHANGE, strict=True)
@@ -73,7 +73,7 @@ def test_whatever_is_wanted_what_is_written_is_bounded(seed: int, dt: float) -> 
 @given(st.tuples(*(st.floats(-most, most) for most in MOST)), periods)
 def test_within_its_bounds_nothing_is_changed(goal: tuple[float, ...], dt: float) -> None:
     """What keeps every bound is written as it is, to the last bit."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     for part in (0.2, 0.4, 0.6, 0.8, 1.0):
         wanted = tuple(rate * part for rate in goal)
         drive(guard, wanted, dt)
@@ -90,7 +90,7 @@ def test_each_bound_is_where_it_is_said_to_be(k: int, sign: float) -> None:
         return tuple(sign * rate if i == k else 0.0 for i in range(4))
 
     def at(rate: float) -> Guard:
-        guard = Guard(CHANNELS)
+        guard = Guard(CHANNELS, 0.0)
         drive(guard, alone(rate))
         return guard
 
@@ -120,7 +120,7 @@ def test_each_bound_is_where_it_is_said_to_be(k: int, sign: float) -> None:
 @pytest.mark.parametrize("motion", Motion)
 def test_what_is_not_finite_is_a_fault_that_names_its_channel(k: int, bad: float, motion: Motion) -> None:
     """A rate that is not finite is never written: it latches a fault with its channel, also where nothing may move."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     drive(guard, HALF)
     wanted = tuple(bad if i == k else rate for i, rate in enumerate(HALF))
     before = guard.written
@@ -133,7 +133,7 @@ def test_what_is_not_finite_is_a_fault_that_names_its_channel(k: int, bad: float
 @given(st.tuples(*(st.floats(-most, most) for most in MOST)), periods)
 def test_a_ramp_keeps_the_robots_direction_and_takes_v_over_a(start: tuple[float, ...], dt: float) -> None:
     """A ramp shrinks all channels alike, by no less than the slowest needs, and ends at exact zero."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     drive(guard, start, dt)
     start = guard.written
     needed = max(abs(rate) / change for rate, change in zip(start, CHANGE, strict=True))
@@ -153,7 +153,7 @@ def test_a_ramp_keeps_the_robots_direction_and_takes_v_over_a(start: tuple[float
 def test_zero_within_v_over_a_of_letting_go(start: tuple[float, ...], seed: int, ramping: float, dt: float) -> None:
     """However long the command ramps, whatever is wanted meanwhile: zero after 0.6/3.5 s and a period, for ever."""
     chance = random.Random(seed)
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     drive(guard, start, dt)
     t, calm = 0.0, chance.random() < 0.5
     for _ in range(600):
@@ -188,7 +188,7 @@ def test_a_ramp_of_the_command_is_left_alone_while_it_is_in_time() -> None:
 
 def test_motion_begins_its_time_anew() -> None:
     """Time without motion counts from the last moment with it: a stop that is called off leaves nothing behind."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     drive(guard, (0.3, 0.0, 0.0, 0.0))
     for _ in range(50):
         for _ in range(10):  # 50 ms of holding on, again and again: more than stop_s in all
@@ -198,7 +198,7 @@ def test_motion_begins_its_time_anew() -> None:
 
 def test_a_fault_is_latched_with_its_first_reason_until_reset() -> None:
     """After a fault all ramps to zero and stays there, whatever is wanted; a reset moves nothing and lets go of it."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     drive(guard, HALF)
     guard.latch("first")
     guard.latch("second")
@@ -217,7 +217,7 @@ def test_a_fault_is_latched_with_its_first_reason_until_reset() -> None:
 
 def test_a_restart_is_standstill_and_keeps_the_fault() -> None:
     """After a restart the robot is taken to stand still, with all its time; a fault is not forgotten."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     drive(guard, (0.3, 0.0, 0.0, 0.0))
     for _ in range(15):
         guard.write((0.3, 0.0, 0.0, 0.0), Motion.RAMPING, DT)
@@ -234,7 +234,7 @@ def test_a_restart_is_standstill_and_keeps_the_fault() -> None:
 def test_any_number_of_channels() -> None:
     """The guard knows no robot: one channel or nine, each has its own bounds."""
     for n in (1, 9):
-        guard = Guard([Channel(f"c{k}", f"x{k}", "m", 1.0 + k, 2.0) for k in range(n)])
+        guard = Guard([Channel(f"c{k}", f"x{k}", "m", 1.0 + k, 2.0) for k in range(n)], 0.0)
         assert guard.stop_s == pytest.approx(n / 2.0)
         guard.write((0.01,) * n, Motion.ALLOWED, 0.01)
         assert guard.written == (0.01,) * n
@@ -244,7 +244,7 @@ def test_any_number_of_channels() -> None:
 
 def test_writes_change_from_one_to_the_next() -> None:
     """Bounds on change are from write to write: two half steps reach as far as the sum of both, in any rhythm."""
-    guard = Guard(CHANNELS)
+    guard = Guard(CHANNELS, 0.0)
     times = [0.004, 0.001, 0.007, 0.002]
     rates = [0.0]
     for dt in times:
@@ -257,7 +257,48 @@ def test_writes_change_from_one_to_the_next() -> None:
 def test_every_channel_must_be_there() -> None:
     """Rates for too few channels are a mistake of the caller's, and raise; nothing is written."""
     for motion in (Motion.ALLOWED, Motion.RAMPING):
-        guard = Guard(CHANNELS)
+        guard = Guard(CHANNELS, 0.0)
         with pytest.raises(ValueError, match="zip"):
             guard.write((0.0, 0.0), motion, DT)
         assert guard.written == ZERO
+
+
+BINARY = Channel("rate", "joint", "rad", 5.0, 2.0)
+"""A channel whose numbers are exact: at 0.5 s a period its change is 1.0."""
+
+
+def test_rounding_is_a_millionth_of_a_change() -> None:
+    """Just a millionth of a period's change past a bound is taken away; anything more is a fault."""
+    guard = Guard([BINARY], 0.0)
+    assert guard.write([-1.0], Motion.ALLOWED, 0.5) == (-1.0,)
+    assert guard.write([1e-6], Motion.ALLOWED, 0.5) == (0.0,)
+    assert guard.fault == ""
+    guard.write([-1.0], Motion.ALLOWED, 0.5)
+    guard.write([1.001e-6], Motion.ALLOWED, 0.5)
+    assert guard.fault.startswith("rate was to be changed by 2 rad/s^2")
+
+
+def test_full_speed_at_once_is_a_change_that_is_too_great() -> None:
+    """What is at its speed limit but comes too suddenly is told as a change."""
+    guard = Guard([BINARY], 0.0)
+    guard.write([5.0], Motion.ALLOWED, 0.5)
+    assert guard.fault == "rate was to be changed by 10 rad/s^2; its limit is 2."
+
+
+def test_the_last_moment_to_brake() -> None:
+    """What is wanted is written up to the last period in which a ramp is still in time, to the last bit."""
+    guard = Guard([Channel("rate", "joint", "rad", 1.0, 2.0)], 0.0)
+    for rate in (0.25, 0.5):
+        guard.write([rate], Motion.ALLOWED, 0.125)
+    assert guard.stop_s == 0.5
+    written = [guard.write([0.5], Motion.RAMPING, 0.125)[0] for _ in range(5)]
+    assert written == [0.5, 0.5, 0.25, 0.0, 0.0]
+
+
+def test_before_motion_was_ever_allowed_nothing_moves() -> None:
+    """A guard that has not been told that something may move writes zero, whatever is wanted, also after a restart."""
+    guard = Guard([BINARY], 0.0)
+    for _ in range(2):
+        assert guard.write([0.5], Motion.RAMPING, 0.5) == (0.0,)
+        guard.write([0.5], Motion.ALLOWED, 0.5)
+        guard.restart()

@@ -82,6 +82,8 @@ def test_clamp_is_the_last_word(wanted: float, happening: float, change: float) 
 
 def test_limits_are_checked() -> None:
     """A limit that is not a finite number above 0 is refused."""
+    with pytest.raises(AttributeError):
+        LIMITS.v_c = 9.0  # type: ignore[misc]
     with pytest.raises(SetupError, match="w_c"):
         Limits(w_c=-0.1)
     with pytest.raises(SetupError, match="dv_c"):

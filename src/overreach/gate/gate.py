@@ -24,6 +24,8 @@ TOLD_S = 0.5
 """How long a refusal is told [s], where nothing weightier is."""
 OPERATORS_KEPT = 64
 """How many operators' last messages are remembered."""
+NEVER = (0, 0)
+"""Number of the last message and the last press of an operator who has not been heard."""
 
 
 class Gated(Record, frozen=True):
@@ -87,13 +89,14 @@ class Gate:
             return Verdict.OTHER_OPERATOR
         if latch.operator != operator:
             self._stick = None
-        latch.arm(operator, max(grip, self._seen.get(operator, (0, 0))[1]))
+        _, pressed = self._seen.get(operator, NEVER)
+        latch.arm(operator, max(grip, pressed))
         return None
 
     def accept(self, stick: Stick, now: float) -> Verdict | None:
         """Take a message that arrived at `now` [s]; return why it is refused, or None."""
         latch = self.latch
-        seq, grip = self._seen.get(stick.operator, (0, 0))
+        seq, grip = self._seen.get(stick.operator, NEVER)
         refusal: Verdict | None = None
         if not (math.isfinite(stick.v_c) and math.isfinite(stick.w_c)):
             refusal = Verdict.NOT_FINITE

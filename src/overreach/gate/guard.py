@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from operator import truediv
 from typing import final
 
 from overreach.types import Channel, Motion
@@ -25,8 +26,9 @@ class Guard:
     where it is longer. From the moment that nobody moves the hand, the robot is at zero within stop_s and a period.
     """
 
-    def __init__(self, channels: Sequence[Channel], ramp_s: float = 0.0) -> None:
+    def __init__(self, channels: Sequence[Channel], ramp_s: float) -> None:
         self.channels = tuple(channels)
+        self._changes = tuple(channel.change_max for channel in self.channels)
         self.stop_s = max(ramp_s, *(channel.rate_max / channel.change_max for channel in self.channels))
         self.fault = ""
         """Why the robot is to stand still until `reset`; empty where it is not."""
@@ -35,7 +37,7 @@ class Guard:
     def restart(self) -> None:
         """Begin from standstill. A fault stays."""
         self.written = (0.0,) * len(self.channels)
-        self._let_go_s = 0.0
+        self._let_go_s = math.inf  # for as long as there has been a robot
 
     def latch(self, reason: str) -> None:
         """Latch a fault for `reason`; the first one stays."""
@@ -53,30 +55,22 @@ class Guard:
                 self.latch(self._not_finite(wanted))
         elif not self.fault:
             bounded = self._bounded(wanted, dt)
-            if bounded is not None and not self._must_brake(motion, dt):
+            in_time = motion is Motion.ALLOWED or self._ramp_s() <= self.stop_s - self._let_go_s
+            if bounded is not None and in_time:
                 self.written = bounded
                 return bounded
         return self.ramp(dt)
 
     def ramp(self, dt: float) -> tuple[float, ...]:
         """Return the next rates on the way from what was last written to zero, all channels by the same fraction."""
-        left = self._ramp_s() / dt
-        if left <= 1.0:
-            self.written = (0.0,) * len(self.channels)
-        else:
-            self.written = tuple(rate - rate / left for rate in self.written)
+        periods = max(1.0, self._ramp_s() / dt)
+        self.written = tuple(rate - rate / periods for rate in self.written)
         return self.written
 
     def _ramp_s(self) -> float:
         """Return how long a ramp from what was last written takes [s]."""
-        longest = 0.0
-        for rate, channel in zip(self.written, self.channels, strict=True):
-            longest = max(longest, abs(rate) / channel.change_max)
+        longest: float = max(map(truediv, map(abs, self.written), self._changes))
         return longest
-
-    def _must_brake(self, motion: Motion, dt: float) -> bool:
-        """Say whether to ramp now, so that the robot is at zero `stop_s` after the hand was let go of."""
-        return motion is Motion.RAMPING and self._ramp_s() + dt > self.stop_s - self._let_go_s + dt
 
     def _bounded(self, wanted: Sequence[float], dt: float) -> tuple[float, ...] | None:
         """Return `wanted`, less what is rounding; None, with the fault latched, where it is not bounded."""
@@ -91,8 +85,8 @@ class Guard:
         return tuple(out)
 
     def _not_finite(self, wanted: Sequence[float]) -> str:
-        name = next(c.name for rate, c in zip(wanted, self.channels, strict=True) if not math.isfinite(rate))
-        return f"{name} was to be written as a value that is not finite."
+        first = next(k for k, rate in enumerate(wanted) if not math.isfinite(rate))
+        return f"{self.channels[first].name} was to be written as a value that is not finite."
 
     @staticmethod
     def _trespass(rate: float, was: float, channel: Channel, dt: float) -> str:
