@@ -93,6 +93,7 @@ WAYS_TO_REST: dict[str, tuple[Callable[[Bench], object], Verdict]] = {
     "disarm": (lambda bench: bench.gate.latch.disarm(), Verdict.DISARMED),
     "spent": (lambda bench: bench.gate.latch.spend(bench.grip), Verdict.REGRIP),
     "other": (lambda bench: bench.gate.latch.arm(OTHER, 0), Verdict.RELEASED),
+    "another": (lambda bench: bench.gate.latch.arm(1, 0), Verdict.RELEASED),
 }
 
 
@@ -108,7 +109,7 @@ def test_every_way_to_rest_zeroes_both_parts(way: str) -> None:
         bench.now += DT
         assert gated.v_c * 0.2 == pytest.approx(-gated.w_c * 0.3)
         assert gated.motion is (Motion.NONE if gated.v_c == 0.0 else Motion.RAMPING)
-        if way != "other":
+        if "other" not in way:
             assert gated.verdict is verdict
         assert (gated.v_c, gated.w_c) == (0.0, 0.0) or k < 24
     assert bench.gate.resting
@@ -160,9 +161,13 @@ def test_turning_alone_is_motion() -> None:
         bench.now += DT
     assert (gated.v_c, gated.w_c, gated.motion) == (0.0, 0.4, Motion.ALLOWED)
     assert not bench.gate.resting
-    back = moving(50.0)
-    back.drive(0.5, v_c=-0.4)
-    assert not back.gate.resting
+    for v_c, w_c in ((0.4, 0.0), (-0.4, 0.0), (0.0, 0.4), (0.0, -0.4)):
+        one_way = Bench(50.0)
+        one_way.arm()
+        one_way.press()
+        one_way.tick(one_way.stick(v_c=v_c, w_c=w_c))
+        assert one_way.gate.tick(one_way.now, DT).motion is Motion.ALLOWED
+        assert not one_way.gate.resting
     bench.now += 0.21
     assert bench.tick() is Verdict.STALE
     assert bench.out[-1][1] > 0.0
@@ -204,6 +209,8 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     gate.tick(0.0, DT)
     assert gate.arm(OTHER, 0, 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 1.0) is None
+    assert gate.seq == 1  # to arm again loses nothing
+    assert gate.accept(Stick(1, 1, 1, True, 0.0, 0.0), 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(OTHER, 0, math.nextafter(1.0, 2.0)) is None
     assert gate.latch.operator == OTHER
     assert gate.seq == 0  # nothing of the first's counts
@@ -229,12 +236,20 @@ def test_numbers_of_messages_and_presses_begin_at_one() -> None:
     gate.arm(ME, -5, 0.0)
     assert gate.accept(Stick(ME, 0, 1, True, 0.4, 0.0), 0.0) is Verdict.OUT_OF_ORDER
     assert gate.accept(Stick(ME, 1, 0, True, 0.4, 0.0), 0.0) is None
-    assert gate.tick(0.6, DT).verdict is Verdict.STALE
-    gate.accept(Stick(ME, 2, 0, True, 0.4, 0.0), 1.0)
-    assert gate.tick(1.0, DT).verdict is Verdict.REGRIP
+    assert gate.tick(0.0, DT).verdict is Verdict.REGRIP
     gate.latch.spend(3)
-    gate.accept(Stick(ME, 3, 2, True, 0.4, 0.0), 1.0)
-    assert gate.tick(1.0, DT).verdict is Verdict.REGRIP
+    gate.accept(Stick(ME, 2, 2, True, 0.4, 0.0), 0.0)
+    assert gate.tick(0.0, DT).verdict is Verdict.REGRIP
+
+
+def test_a_second_of_silence_to_the_last_bit_is_no_loss() -> None:
+    """A press that is heard of 1 s after the last message counts; past that, one made during the silence does not."""
+    for silence, verdict in ((1.0, Verdict.ACCELERATION), (math.nextafter(1.0, 2.0), Verdict.REGRIP)):
+        gate = Gate()
+        gate.arm(ME, 0, 0.0)
+        gate.accept(Stick(ME, 1, 1, True, 0.4, 0.0), 0.0)
+        gate.accept(Stick(ME, 2, 2, True, 0.4, 0.0), silence)
+        assert gate.tick(silence, DT).verdict is verdict
 
 
 def test_what_the_gate_says_cannot_be_changed() -> None:

@@ -175,6 +175,7 @@ def test_what_a_channel_owes_apart_from_the_command(sign: float) -> None:
     assert scale(1.0, 0.0, -0.5, change=0.25) == (0.75, Verdict.ACCELERATION)
     assert scale(0.5, 1.0, 0.5, change=0.0625) == (1.0, Verdict.MOVING)
     assert feasible_scale((0.0,), (0.0,), (1.0,), (9.0,), (sign * 5.0,)) == (1.0, Verdict.MOVING)
+    assert scale(0.5, 0.5, 0.0, change=0.0) == (1.0, Verdict.MOVING)  # one scale alone is enough
 
 
 @given(st.tuples(*[st.floats(-3, 3)] * 2), st.tuples(*[st.floats(-3, 3)] * 2), st.tuples(*[st.floats(-1, 1)] * 2))

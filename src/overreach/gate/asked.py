@@ -48,11 +48,9 @@ class Asked:
         self._lag_to(t)
 
     def _lag_to(self, t: float) -> None:
-        passed = 0.0 if self._t is None else t - self._t
-        if passed > 0.0:
-            fade = math.exp(-passed / LAG_S)
+        if self._t is not None and t > self._t:
+            fade = math.exp((self._t - t) / LAG_S)
             self.lagged = tuple(
                 goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)
             )
-        if self._t is None or passed > 0.0:
-            self._t = t
+        self._t = t if self._t is None else max(self._t, t)

@@ -76,7 +76,7 @@ def feasible_scale(
     for rate, own, most in zip(wanted, rest, fastest, strict=True):
         along = math.copysign(1.0, rate) * own
         if rate != 0.0 and abs(rate) * scale + along > most * (1.0 + SLACK):
-            scale = max(0.0, (most - along) / abs(rate))
+            scale = (most - along) / abs(rate)
             verdict = Verdict.SPEED
     low, high = -math.inf, scale
     for rate, own, was, step in zip(wanted, rest, happening, change, strict=True):
