@@ -20,7 +20,7 @@ reproduce: $(VENV)/.ready-all
 venv: $(VENV)/.ready
 
 test: $(VENV)/.ready-dev browser lint types
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile $(REAL_TIME:%=--ignore=%)
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder $(REAL_TIME:%=--ignore=%)
 	$(BIN)/python -m pytest -q $(REAL_TIME)
 
 lint: $(VENV)/.ready-dev

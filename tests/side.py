@@ -46,6 +46,8 @@ class Side:
         self.stick = (0.0, 0.0)
         self.held = False
         self.written: list[tuple[float, ...]] = [(0.0, 0.0, 0.0, 0.0)]
+        self.faulted_at: int | None = None
+        """Number of the tick of the first fault."""
 
     def arm(self) -> None:
         self.gate.arm(ME, self.grip, self.now)
@@ -65,6 +67,8 @@ class Side:
         self.robot.write(step.twist, step.dtheta, self.now)
         if self.controller.guard.fault:
             self.gate.latch.fail(self.controller.guard.fault)
+            if self.faulted_at is None:
+                self.faulted_at = len(self.written)
         self.written.append(step.rates)
         self.now += self.dt
         return step
