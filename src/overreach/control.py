@@ -6,7 +6,7 @@ from math import cos, inf, isfinite
 
 import msgspec
 
-from overreach.arm.limits import fastest_joints
+from overreach.arm.limits import Room, room
 from overreach.arm.planar import forward, inverse, joint_rates_over, polar_rates, polar_to_joint_rates, wrap
 from overreach.errors import LONGEST_NAME, told
 from overreach.gate.feedback import Feedback
@@ -169,11 +169,15 @@ class HandController:
             then = self._feedback.asked.in_force
             slip_v, slip_w = state.v_b - then[0], state.w_b - then[1]
         open_ = closes and (slip_v != 0.0 or slip_w != 0.0 or self.model.base.lag > 0.0)
+        owed = REST[2:]
         if open_:
             v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, v_b + slip_v, w_b + slip_w, mount)
-        apart = arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount) if open_ else (0.0, 0.0)
+            owed = self._solved(state, *arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount))
+        own = split.dtheta
+        joints = self._solved(state, v_m, w_m) if own is None else _sum(own, owed, 1.0)
 
-        scale, why = self._limit(state, (v_b, w_b, v_m, w_m), split.dtheta, apart, dt)
+        free = room(self.model.arm, state.theta, dt)
+        scale, why = self._limit((v_b, w_b, *joints), owed, free, dt)
         if why is not Verdict.MOVING:
             verdict = why
         v_b, w_b = self._base(v_b * scale, w_b * scale, dt)
@@ -182,11 +186,10 @@ class HandController:
             v_m, w_m = arm_residual(l, psi, u_r * k, u_t * k, v_b + slip_v, w_b + slip_w, mount)
         else:
             v_m, w_m = v_m * scale, w_m * scale
-        own = split.dtheta if split.dtheta is None else tuple(rate * scale for rate in split.dtheta)
-        dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, own, dt)
+        dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, own and _sum(own, owed, scale), free, dt)
         if why is not Verdict.MOVING:
             verdict = why
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, split.dtheta)
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, own)
         return Step(state, polar, u_r, u_t, applied, dtheta, full * scale, verdict)
 
     def _split(self, state: RobotState, l: float, psi: float, u_r: float, u_t: float) -> Split:
@@ -201,34 +204,27 @@ class HandController:
         check_split(split)
         return split
 
-    def _limit(
-        self,
-        state: RobotState,
-        rates: tuple[float, float, float, float],
-        own: tuple[float, ...] | None,
-        apart: tuple[float, float],
-        dt: float,
-    ) -> tuple[float, Verdict]:
+    def _solved(self, state: RobotState, v_m: float, w_m: float) -> tuple[float, float]:
+        """Return the joint rates [rad/s] of the hand's v_m [m/s], w_m [rad/s], by the Jacobian."""
+        arm = self.model.arm
+        return polar_to_joint_rates(state.theta[1], v_m, w_m, *arm.links, arm.elbow)[:2]
+
+    def _limit(self, rates: tuple[float, ...], owed: tuple[float, ...], free: Room, dt: float) -> tuple[float, Verdict]:
         """Return the scale of the command at which no limit is passed, and why.
 
-        rates: v_b, w_b, v_m, w_m at scale 1; own: joint rates that the law has decided itself, else they follow from
-        v_m, w_m; apart: the part of v_m, w_m that is owed to the base whatever the command is.
+        rates: of base and joints at scale 1; owed: what the joints owe the base whatever the command is, a part of it.
         """
         arm, base = self.model.arm, self.model.base
-        theta_2 = state.theta[1]
-        joints = own or polar_to_joint_rates(theta_2, rates[2], rates[3], *arm.links, arm.elbow)[:2]
-        owed = REST[2:]
-        if apart != (0.0, 0.0):
-            owed = polar_to_joint_rates(theta_2, *apart, *arm.links, arm.elbow)[:2]
-        fastest = fastest_joints(arm, state.theta, joints, dt)
-        asked = (rates[0], rates[1], *(rate - mine for rate, mine in zip(joints, owed, strict=True)))
-        change = (base.dv_max * dt, base.dw_max * dt, *(rate * dt for rate in arm.ddtheta_max))
-        scale, verdict = feasible_scale(
-            asked, self.guard.written, (base.v_max, base.w_max, *fastest), change, (0.0, 0.0, *owed)
-        )
+        v_b, w_b, *joints = rates
+        fastest = [high if rate >= 0.0 else -low for rate, (low, high) in zip(joints, free, strict=True)]
+        commanded = (v_b, w_b, joints[0] - owed[0], joints[1] - owed[1])
+        step_1, step_2 = arm.ddtheta_max
+        change = (base.dv_max * dt, base.dw_max * dt, step_1 * dt, step_2 * dt)
+        most = (base.v_max, base.w_max, *fastest)
+        scale, verdict = feasible_scale(commanded, self.guard.written, most, change, (0.0, 0.0, *owed))
         if verdict is Verdict.SPEED and any(
-            abs(rate) * scale >= most * 0.999 and most < arm.dtheta_max[k] * 0.999
-            for k, (rate, most) in enumerate(zip(joints, fastest, strict=True))
+            abs(rate) * scale >= top * 0.999 and top < arm.dtheta_max[k] * 0.999
+            for k, (rate, top) in enumerate(zip(joints, fastest, strict=True))
         ):
             verdict = Verdict.JOINT_LIMIT
         return scale, verdict
@@ -236,13 +232,11 @@ class HandController:
     def _base(self, v_b: float, w_b: float, dt: float) -> tuple[float, float]:
         """Return the base's rates, held to its accelerations."""
         base = self.model.base
-        return (
-            clamp_change(v_b, self.guard.written[0], base.dv_max * dt),
-            clamp_change(w_b, self.guard.written[1], base.dw_max * dt),
-        )
+        was_v, was_w, *_ = self.guard.written
+        return clamp_change(v_b, was_v, base.dv_max * dt), clamp_change(w_b, was_w, base.dw_max * dt)
 
     def _joints(
-        self, state: RobotState, v_m: float, w_m: float, own: tuple[float, ...] | None, dt: float
+        self, state: RobotState, v_m: float, w_m: float, own: tuple[float, ...] | None, free: Room, dt: float
     ) -> tuple[tuple[float, ...], float, float, Verdict]:
         """Return joint rates, the polar rates that they give, and what kept them from what was asked.
 
@@ -264,21 +258,20 @@ class HandController:
             verdict = Verdict.SINGULAR if damped else Verdict.MOVING
             if damped and (v_m > 0.0) == (cos(state.theta[1]) > 0.0):  # straight and farther out, or folded and in
                 verdict = Verdict.OUT_OF_REACH
-        bounded = self._bounded(state, (one, two), dt)
+        bounded = self._bounded((one, two), free, dt)
         if bounded is not None:
             one, two = bounded
             v_m, w_m = polar_rates(state.theta[1], one, two, *arm.links)  # what the joints really give
         return (one, two), v_m, w_m, verdict
 
-    def _bounded(self, state: RobotState, dtheta: tuple[float, float], dt: float) -> tuple[float, float] | None:
+    def _bounded(self, dtheta: tuple[float, float], free: Room, dt: float) -> tuple[float, float] | None:
         """Return joint rates held to their limits: to what still stops in time, then to the accelerations."""
-        most = fastest_joints(self.model.arm, state.theta, dtheta, dt)
-        one, two = (
-            clamp_change(max(-top, min(top, rate)), was, change * dt)
-            for rate, top, was, change in zip(
-                dtheta, most, self.guard.written[2:], self.model.arm.ddtheta_max, strict=True
+        one, two = [
+            clamp_change(max(low, min(high, rate)), was, change * dt)
+            for rate, (low, high), was, change in zip(
+                dtheta, free, self.guard.written[2:], self.model.arm.ddtheta_max, strict=True
             )
-        )
+        ]
         return one, two
 
     def _last_word(self, step: Step, motion: Motion, dt: float) -> Step:
@@ -297,3 +290,8 @@ class HandController:
     def _still(self, state: RobotState) -> Step:
         """Return a step in which nothing moves."""
         return Step(state, self.locate(state), 0.0, 0.0, STILL, REST[2:], 0.0, Verdict.MOVING)
+
+
+def _sum(own: tuple[float, ...], owed: tuple[float, ...], scale: float) -> tuple[float, ...]:
+    """Return joint rates that a law has decided itself, scaled, and what the joints owe the base."""
+    return tuple(rate * scale + more for rate, more in zip(own, owed, strict=True))

@@ -21,11 +21,20 @@ def fastest_towards(
     return min(speed, sqrt(2.0 * braking * ahead), ahead / dt)
 
 
-def fastest_joints(arm: Arm2R, theta: tuple[float, ...], dtheta: tuple[float, ...], dt: float) -> tuple[float, ...]:
-    """Return `fastest_towards` for every joint of `arm`, braking at half of what the joint can."""
+Room = tuple[tuple[float, float], ...]
+"""Per joint the least and the greatest rate [rad/s] that are allowed."""
+
+
+def room(arm: Arm2R, theta: tuple[float, ...], dt: float) -> Room:
+    """Return `fastest_towards` both ends for every joint of `arm`, braking at half of what the joint can."""
     return tuple(
-        fastest_towards(angle, rate, least, most, speed, 0.5 * braking, dt)
-        for angle, rate, least, most, speed, braking in zip(
-            theta, dtheta, arm.theta_min, arm.theta_max, arm.dtheta_max, arm.ddtheta_max, strict=True
-        )
+        [
+            (
+                -fastest_towards(angle, -1.0, least, most, speed, 0.5 * braking, dt),
+                fastest_towards(angle, 1.0, least, most, speed, 0.5 * braking, dt),
+            )
+            for angle, least, most, speed, braking in zip(
+                theta, arm.theta_min, arm.theta_max, arm.dtheta_max, arm.ddtheta_max, strict=True
+            )
+        ]
     )

@@ -48,9 +48,11 @@ class Asked:
         self._lag_to(t)
 
     def _lag_to(self, t: float) -> None:
-        if self._t is not None and t > self._t:
+        if self._t is None:
+            self._t = t
+        elif t > self._t:
             fade = math.exp((self._t - t) / LAG_S)
+            self._t = t
             self.lagged = tuple(
-                goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)
+                [goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)]
             )
-        self._t = t if self._t is None else max(self._t, t)

@@ -49,13 +49,13 @@ class Feedback:
     def __init__(self, channels: Sequence[Channel]) -> None:
         self._channels = tuple(channels)
         self.asked = Asked(len(self._channels))
-        self._range = [
-            (channel.lower - BEYOND[channel.unit], channel.upper + BEYOND[channel.unit], TOO_FAST * channel.rate_max)
-            for channel in self._channels
+        self._ranges = [
+            (k, channel.lower - BEYOND[channel.unit], channel.upper + BEYOND[channel.unit], TOO_FAST * channel.rate_max)
+            for k, channel in enumerate(self._channels)
         ]
-        self._follow = [
-            (TOLERANCE[channel.unit], SLOWEST * channel.dead_band, FROZEN_STEPS * channel.resolution)
-            for channel in self._channels
+        self._thresholds = [
+            (k, TOLERANCE[channel.unit], SLOWEST * channel.dead_band, FROZEN_STEPS * channel.resolution)
+            for k, channel in enumerate(self._channels)
         ]
         self.restart()
 
@@ -83,9 +83,10 @@ class Feedback:
         """
         if not math.isfinite(t):
             return "The robot's feedback has no finite time."
-        for k, (least, most, fastest) in enumerate(self._range):
-            if not (least <= positions[k].real <= most and abs(rates[k]) <= fastest and cmath.isfinite(positions[k])):
-                return self._why_not(k, positions[k], rates[k])
+        for channel, position, rate in zip(self._ranges, positions, rates, strict=True):
+            k, least, most, fastest = channel
+            if not (least <= position.real <= most and abs(rate) <= fastest and cmath.isfinite(position)):
+                return self._why_not(k, position, rate)
         if t <= self.stamp:
             if now - self._came_at > FROZEN_S:
                 return f"The robot's feedback is frozen: its time has not advanced for {FROZEN_S:g} s."
@@ -101,20 +102,23 @@ class Feedback:
     def _follows(self, t: float, passed: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
         """Return which channel does not do what was asked of it, and how; or ""."""
         asked, lagged = self.asked.in_force, self.asked.lagged
-        for k, (tolerance, slowest, owed) in enumerate(self._follow):
-            at_once, slowly, rate = asked[k], lagged[k], rates[k]
-            off = max(min(at_once, slowly) - rate, rate - max(at_once, slowly))
-            if off > max(tolerance, TOLERANCE_PART * max(abs(at_once), abs(slowly))):
+        for channel, at_once, slowly, position, rate in zip(
+            self._thresholds, asked, lagged, positions, rates, strict=True
+        ):
+            k, tolerance, slowest, owed = channel
+            low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
+            wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
+            if low - wide <= rate <= high + wide:
+                self._off_since[k] = math.inf
+            else:
                 self._off_since[k] = min(self._off_since[k], t)
                 if t - self._off_since[k] > FOLLOW_S:
                     return self._not_following(k, rate)
-            else:
-                self._off_since[k] = math.inf
-            if positions[k] != self._positions[k]:
-                self._positions[k] = positions[k]
+            if position != self._positions[k]:
+                self._positions[k] = position
                 self._changed_at[k] = t
                 self._owed[k] = 0.0
-            elif abs(at_once) > slowest:
+            elif not -slowest <= at_once <= slowest:
                 self._owed[k] += min(abs(at_once), abs(slowly)) * passed
                 if self._owed[k] > owed and t - self._changed_at[k] > FROZEN_S:
                     moves = self._channels[k].moves

@@ -29,6 +29,7 @@ class Guard:
     def __init__(self, channels: Sequence[Channel], ramp_s: float) -> None:
         self.channels = tuple(channels)
         self._changes = tuple(channel.change_max for channel in self.channels)
+        self._mosts = tuple(channel.rate_max for channel in self.channels)
         self.stop_s = max(ramp_s, *(channel.rate_max / channel.change_max for channel in self.channels))
         self.fault = ""
         """Why the robot is to stand still until `reset`; empty where it is not."""
@@ -74,12 +75,14 @@ class Guard:
 
     def _bounded(self, wanted: Sequence[float], dt: float) -> tuple[float, ...] | None:
         """Return `wanted`, less what is rounding; None, with the fault latched, where it is not bounded."""
-        out = []
-        for rate, was, channel in zip(wanted, self.written, self.channels, strict=True):
-            most, change = channel.rate_max, channel.change_max * dt
+        out: list[float] = []
+        for rate, was, most, change_max in zip(wanted, self.written, self._mosts, self._changes, strict=True):
+            change = change_max * dt
             held = min(most, was + change, max(-most, was - change, rate))
             if not abs(rate - held) <= SLACK * change:  # so that NaN is caught as well
-                self.latch(self._trespass(rate, was, channel, dt) if math.isfinite(rate) else self._not_finite(wanted))
+                k = len(out)
+                finite = math.isfinite(rate)
+                self.latch(self._trespass(rate, was, self.channels[k], dt) if finite else self._not_finite(wanted))
                 return None
             out.append(held)
         return tuple(out)

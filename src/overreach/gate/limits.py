@@ -74,7 +74,7 @@ def feasible_scale(
     verdict = Verdict.MOVING
     rest = apart or (0.0,) * len(wanted)
     for rate, own, most in zip(wanted, rest, fastest, strict=True):
-        along = math.copysign(1.0, rate) * own
+        along = own if rate > 0.0 else -own
         if rate != 0.0 and abs(rate) * scale + along > most * (1.0 + SLACK):
             scale = (most - along) / abs(rate)
             verdict = Verdict.SPEED
