@@ -4,13 +4,16 @@ import math
 import random
 from itertools import pairwise
 
+import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from overreach.arm.planar import inverse
+from overreach.baselines.weighted import weighted
 from overreach.control import HandController
 from overreach.experiments.law_alone import LawAlone
+from overreach.law.authority import ee_velocity
 from overreach.law.blend import step
 from overreach.law.laws import exact, paper
 from overreach.law.workspace import Workspace
@@ -133,3 +136,21 @@ def test_inside_the_workspace_only_the_arm_moves() -> None:
     state = robot.read(0.5)
     assert (state.x_b, state.y_b, state.theta_b) == (0.0, 0.0, 0.0)
     assert state.theta != inverse(0.65, 0.0, 0.5, 0.5, 1)
+
+
+def test_a_joint_law_that_closes_the_residual_does() -> None:
+    """To the joint rates of a law that says it closes the residual, what the base does otherwise is added."""
+    law = weighted()
+    law.closes_residual = True
+    robot = KinematicRobot(psi=0.3)
+    hand = HandController(robot.model, law, Frame.WORLD)
+    for k in range(200):
+        state = robot.read(k * DT)
+        slipping = msgspec.structs.replace(state, v_b=state.v_b + 0.05, w_b=state.w_b - 0.1) if k > 100 else state
+        step = hand.step(slipping, 0.2, 0.05, DT, k * DT)
+        robot.write(step.twist, step.dtheta, k * DT)
+    assert step.scale == 1.0
+    mount = (0.0, 0.0, 0.0)
+    slip_v, slip_w = step.twist.v_b + 0.05, step.twist.w_b - 0.1
+    u_r, u_t = ee_velocity(step.polar.l, step.polar.psi, slip_v, slip_w, step.split.v_m, step.split.w_m, mount)
+    assert (u_r, u_t) == pytest.approx((step.u_r, step.u_t), abs=1e-9)

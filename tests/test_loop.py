@@ -9,11 +9,12 @@ import pytest
 
 from overreach.clock import SteppedClock
 from overreach.link.endpoint import free_port
+from overreach.link.messages import State
 from overreach.link.robot_end import RobotEnd
 from overreach.loop import Loop
 from overreach.model.planar import load_planar
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import BaseTwist, RobotState, Stick, Verdict
+from overreach.types import BaseTwist, RobotState, Split, Stick, Verdict
 
 PERIOD = 0.005
 
@@ -210,3 +211,35 @@ def test_a_law_that_is_slow_three_times_in_a_row_is_a_fault(bench: Bench, slow: 
     bench.drive(300)
     assert bench.loop.overruns > 0
     assert (bench.loop.gate.latch.fault == "The law 'slow' takes 5 ms; a period has 5 ms.") is fault
+
+
+def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what gate and law say the weightier is told: NO_SOLUTION over SPEED, STOPPED over that, with its look."""
+    states: list[State] = []
+    monkeypatch.setattr(bench.loop._link, "publish", states.append)
+    law = bench.loop.controller.law
+
+    class Unsolved:
+        name, frame, closes_residual = "unsolved", law.frame, law.closes_residual
+        workspace, blend, mount = law.workspace, law.blend, law.mount
+
+        def split(self, *case: float) -> Split:
+            return Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, Verdict.NO_SOLUTION)
+
+    bench.loop.controller.configure(cast(Any, Unsolved()))
+
+    def too_fast(k: int) -> None:
+        bench.seq += 1
+        bench.loop.gate.accept(Stick(7, bench.seq, 1, True, 0.8, 0.0), bench.clock.now())
+        if k == 150:
+            bench.loop.gate.latch.stop()
+
+    bench.push = lambda: None  # type: ignore[method-assign]  # another operator
+    bench.drive(300, too_fast)
+    told = [(state.verdict, state.look, state.sentence) for state in states]
+    said = dict.fromkeys(told)
+    assert list(said) == [
+        (verdict.value, verdict.look, verdict.sentence)
+        for verdict in (Verdict.NO_SOLUTION, Verdict.STOPPED, Verdict.ENDING)
+    ]
+    assert states[60].scale == 0.0
