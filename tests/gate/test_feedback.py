@@ -310,9 +310,11 @@ def test_each_threshold_itself_is_still_fine() -> None:
 def test_not_following_begins_past_its_threshold_and_its_time() -> None:
     """A rate that is off by the tolerance itself may be so for ever; one that is off by more, for 0.3 s."""
     joint = Channel("rate", "joint", "rad", 3.0, 20.0)
-    at, past = exactly(joint), exactly(joint)
-    for k in range(50):
-        assert at.check(k / 10, [float(k)], [0.2], k / 10) == ""
+    past = exactly(joint)
+    for rate in (0.2, -0.2):
+        at = exactly(joint)
+        for k in range(50):
+            assert at.check(k / 10, [float(k)], [rate], k / 10) == ""
     assert past.check(0.0, [0.0], [0.25], 0.0) == ""
     assert past.check(0.3, [1.0], [0.25], 0.3) == ""
     assert "does not follow" in past.check(math.nextafter(0.3, 1.0), [2.0], [0.25], 0.3)
@@ -352,9 +354,10 @@ def test_frozen_begins_past_its_time() -> None:
 
 def test_at_the_edge_of_its_dead_band_a_robot_may_stand_still() -> None:
     """Asked for 1.5 dead bands to the last bit, it may stand still for ever."""
-    feedback = steadily(0.25, 0.375)
-    for k in range(200):
-        assert feedback.check(k / 4, [1.0], [0.375], k / 4) == ""
+    for rate in (0.375, -0.375):
+        feedback = steadily(0.25, rate)
+        for k in range(200):
+            assert feedback.check(k / 4, [1.0], [rate], k / 4) == ""
 
 
 def test_a_change_of_any_kind_pays_what_is_owed() -> None:

@@ -102,10 +102,8 @@ class Feedback:
     def _follows(self, t: float, passed: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
         """Return which channel does not do what was asked of it, and how; or ""."""
         asked, lagged = self.asked.in_force, self.asked.lagged
-        for channel, at_once, slowly, position, rate in zip(
-            self._thresholds, asked, lagged, positions, rates, strict=True
-        ):
-            k, tolerance, slowest, owed = channel
+        for k, tolerance, slowest, owed in self._thresholds:
+            at_once, slowly, position, rate = asked[k], lagged[k], positions[k], rates[k]
             low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
             wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
             if low - wide <= rate <= high + wide:
