@@ -104,11 +104,11 @@ class HandController:
         state: None where there is none; the last is kept. now [s]: the time, on the clock of `state.t`; by default that
         of a state that is newer, else dt later. motion: what a gate says; by default a command that is not 0 may move.
         """
-        if now is None:
-            newer = state is not None and state.t > self._feedback.stamp
-            now = state.t if state is not None and newer else self._now + dt
-        self._now = now
-        state = self._believe(state, now)
+        try:
+            self._believe(state, dt, now)
+        except Exception as error:  # a driver that is a plug-in may report anything
+            self.guard.latch(f"The robot's feedback cannot be used: {told(error)}.")
+        state = self._believed
         finite = isfinite(v_c + w_c)
         if not finite:
             v_c = w_c = 0.0
@@ -116,16 +116,14 @@ class HandController:
             motion = Motion.NONE if v_c == 0.0 and w_c == 0.0 else Motion.ALLOWED
         try:
             step = self._decide(state, v_c, w_c, dt)
-        except Unusable as error:
-            self.guard.latch(f"{self._name} answered {error}.")
-            step = self._still(state)
-        except Exception as error:  # a law that is a plug-in may raise anything
-            self.guard.latch(f"{self._name} raised {told(error)}.")
+        except Exception as error:  # as above, a law
+            what = f"answered {error}" if isinstance(error, Unusable) else f"raised {told(error)}"
+            self.guard.latch(f"{self._name} {what}.")
             step = self._still(state)
         if step.split.verdict is not Verdict.MOVING:
             motion = Motion.NONE  # the law has nothing to give
         step = self._last_word(step, motion, dt)
-        self._feedback.asked.add(step.rates, now)
+        self._feedback.asked.add(step.rates, self._now)
         if self.guard.fault:
             return _with(step, verdict=Verdict.FAULT, fault=self.guard.fault)
         turn = heading_rate(self.frame, w_c * step.scale)
@@ -137,20 +135,21 @@ class HandController:
         """Return the next rates on the way to zero: without state, command or law. For the end of every run."""
         return self._written(self._still(self._believed), self.guard.ramp(dt))
 
-    def _believe(self, state: RobotState | None, now: float) -> RobotState:
-        """Return `state`, or the last one that was believed, with the fault latched, where it cannot be."""
+    def _believe(self, state: RobotState | None, dt: float, now: float | None) -> None:
+        """Keep the time, and `state` where it can be believed; else latch the fault and keep the last that was."""
+        stamp = self._feedback.stamp
         if state is None:
-            if self._feedback.stamp == -inf:
+            if stamp == -inf:
                 self.guard.latch("The robot has reported nothing yet.")
-                return self._believed
+                return
             state = self._believed
+        self._now = now if now is not None else state.t if state.t > stamp else self._now + dt
         positions = (complex(state.x_b, state.y_b), state.theta_b, *state.theta)
-        wrong = self._feedback.check(state.t, positions, (state.v_b, state.w_b, *state.dtheta), now)
+        wrong = self._feedback.check(state.t, positions, (state.v_b, state.w_b, *state.dtheta), self._now)
         if wrong:
             self.guard.latch(wrong)
         elif state.t >= self._feedback.stamp:
             self._believed = state
-        return self._believed
 
     def _decide(self, state: RobotState, v_c: float, w_c: float, dt: float) -> Step:
         """Return what law, residual, limits and arm make of a command."""

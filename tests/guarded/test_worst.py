@@ -239,6 +239,26 @@ def test_an_exception_of_a_law_is_a_fault(error: Exception) -> None:
     assert not any(step.rates)
 
 
+@pytest.mark.parametrize(
+    "report",
+    [
+        "nonsense", 7, (), RobotState(*(None,) * 8),  # type: ignore[arg-type]
+        RobotState(51.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.1,), (0.0,)),
+        RobotState(51.0, 0.0, "0", 0.0, 0.0, 0.0, (0.1, 0.2), (0.0, 0.0)),  # type: ignore[arg-type]
+        RobotState(51.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.1, 0.2, 0.3), (0.0, 0.0, 0.0)),
+    ],
+)  # fmt: skip
+def test_a_report_that_is_none_is_a_fault(report: Any) -> None:
+    """Whatever a driver reports that is no state: FAULT with what it was, a ramp, and nothing leaves the controller."""
+    side = Side(altered=lambda true: report if true.t >= 51.0 else true)
+    side.arm()
+    step = side.drive(1.5)
+    side.check()
+    assert step.verdict is Verdict.FAULT
+    assert step.fault.startswith("The robot's feedback cannot be used: ")
+    assert not any(step.rates)
+
+
 def test_a_fault_is_left_by_reset_arm_and_a_new_press_only() -> None:
     """FAULT stays while its cause does; then arming is refused until a reset, and only a new press moves the robot."""
     broken = True

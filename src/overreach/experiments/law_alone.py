@@ -13,11 +13,11 @@ from overreach.types import Motion, RobotState, Step, Verdict
 class LawAlone(HandController):
     """A controller that bounds nothing: every rate is finite, that is all. Nothing that moves a robot imports it."""
 
-    def _believe(self, state: RobotState | None, now: float) -> RobotState:
+    def _believe(self, state: RobotState | None, dt: float, now: float | None) -> None:
         if state is not None:
+            self._now = state.t if now is None else now
             self._feedback.asked.move_to(state.t)
             self._believed = state
-        return self._believed
 
     def _limit(self, *_: object) -> tuple[float, Verdict]:
         return 1.0, Verdict.MOVING
