@@ -1,4 +1,4 @@
-"""Make the README's picture of the page: `python docs/pictures.py`. It is what the page looks like, not a drawing."""
+"""Make the README's picture of the page, as it is: `PYTHONPATH=. .venv/bin/python docs/pictures.py`."""
 
 from __future__ import annotations
 
