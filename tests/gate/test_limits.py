@@ -158,6 +158,21 @@ def test_limits_that_cannot_all_be_kept_share_what_is_missing() -> None:
     assert feasible_scale((1.0, 0.5), (1.0, 0.0), (9.0, 9.0), (0.5, 0.25)) == (0.5, Verdict.ACCELERATION)
 
 
+def test_no_change_is_worth_a_speed_limit() -> None:
+    """Where one channel needs a scale of at least 0.9 and the speed of another allows 0.5, it is 0.5."""
+    assert feasible_scale((2.0, 1.0), (0.9, 1.0), (1.0, 9.0), (0.25, 0.1)) == (0.5, Verdict.ACCELERATION)
+
+
+@given(fours, fours)
+def test_speed_limits_hold_at_any_scale_that_is_returned(
+    wanted: tuple[float, ...], happening: tuple[float, ...]
+) -> None:
+    """Whatever the robot is doing, the scaled command keeps every speed limit."""
+    fastest = (1.0, 2.0, 0.5, 3.0)
+    scale, _ = feasible_scale(wanted, happening, fastest, (0.01, 0.02, 0.03, 0.5))
+    assert all(abs(scale * rate) <= most * (1 + 1e-8) for rate, most in zip(wanted, fastest, strict=True))
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_what_a_channel_owes_apart_from_the_command(sign: float) -> None:
     """At scale s a rate is s wanted + apart: apart takes from the limit ahead, or adds to it, and is not scaled."""

@@ -67,8 +67,8 @@ def feasible_scale(
 
     At scale s the rate of channel i is s wanted_i + apart_i, where `apart` (none by default) is what a channel does
     whatever the command is. It must satisfy |rate_i| <= fastest_i and |rate_i - happening_i| <= change_i (acceleration
-    times the period). Where no scale keeps all, the one that is least far out is returned; the caller then
-    clamps each channel (`clamp_change`). All must be finite.
+    times the period). Where no scale keeps all, the one that is least far out is returned that keeps the speeds; the
+    caller then clamps each channel (`clamp_change`). All must be finite.
     """
     scale = 1.0
     verdict = Verdict.MOVING
@@ -89,7 +89,7 @@ def feasible_scale(
     if low > high:
         high = 0.5 * (low + high)
         verdict = Verdict.ACCELERATION
-    return max(0.0, min(1.0, high)), verdict
+    return max(0.0, min(scale, high)), verdict
 
 
 def clamp_change(wanted: float, happening: float, change: float) -> float:
