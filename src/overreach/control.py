@@ -14,7 +14,7 @@ from overreach.gate.guard import Guard
 from overreach.gate.limits import clamp_change, feasible_scale
 from overreach.law.authority import arm_residual
 from overreach.law.frame import FRAMES, heading_rate
-from overreach.law.laws import JointLaw, Law, Unusable, check_split
+from overreach.law.laws import JointLaw, Law, UnusableError, check_split
 from overreach.law.lead import lead
 from overreach.model.planar import PlanarRobot
 from overreach.types import Frame, Motion, PolarState, RobotState, Split, Step, Verdict, weightier
@@ -117,7 +117,7 @@ class HandController:
         try:
             step = self._decide(state, v_c, w_c, dt)
         except Exception as error:  # as above, a law
-            what = f"answered {error}" if isinstance(error, Unusable) else f"raised {told(error)}"
+            what = f"answered {error}" if isinstance(error, UnusableError) else f"raised {told(error)}"
             self.guard.latch(f"{self._name} {what}.")
             step = self._still(state)
         if step.split.verdict is not Verdict.MOVING:
@@ -192,7 +192,7 @@ class HandController:
         return Step(state, polar, u_r, u_t, applied, dtheta, full * scale, verdict)
 
     def _split(self, state: RobotState, l: float, psi: float, u_r: float, u_t: float) -> Split:
-        """Return the law's answer; raises Unusable where it is none."""
+        """Return the law's answer; raises UnusableError where it is none."""
         lag = self.model.base.lag
         if self._joint_law is not None:
             split = self._joint_law.split_joints(state.theta, u_r, u_t)

@@ -43,22 +43,22 @@ class JointLaw(Law, Protocol):
         ...
 
 
-class Unusable(Exception):  # noqa: N818  # it is what the answer is, not an error of the caller's
+class UnusableError(ValueError):
     """A law's answer that cannot be used; says which part is what."""
 
 
 def check_split(split: Split) -> None:
-    """Raise Unusable unless every number of a law's answer is finite, its scale in [0, 1] and its verdict one."""
+    """Raise UnusableError unless every number of a law's answer is finite, its scale in [0, 1] and its verdict one."""
     rates = (split.v_b, split.w_b, split.v_m, split.w_m, *(split.dtheta or ()))
     if math.isfinite(split.mu + split.sigma + sum(map(abs, rates))) and 0.0 <= split.scale <= 1.0:
         if isinstance(split.verdict, Verdict):
             return
-        raise Unusable(f"the verdict {split.verdict!r}")
+        raise UnusableError(f"the verdict {split.verdict!r}")
     for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
         value = getattr(split, name)
         if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
-            raise Unusable(f"{name} = {value}")
-    raise Unusable(f"rates too great to use: {rates}")
+            raise UnusableError(f"{name} = {value}")
+    raise UnusableError(f"rates too great to use: {rates}")
 
 
 def constants(workspace: Workspace, blend: Blend, mount: Mount) -> tuple[authority.Limits6, authority.Mount3]:
