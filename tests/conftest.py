@@ -23,7 +23,7 @@ settings.load_profile("overreach")
 @pytest.fixture(scope="session")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What one whole run of `reproduce` wrote, with the timing cut short: many tests look at it."""
-    from overreach.experiments.reproduce import cost, run
+    from overreach.reproduce import cost, run
 
     folder = tmp_path_factory.mktemp("reproduce") / "new" / "report"
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():

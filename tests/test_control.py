@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from overreach.arm.planar import inverse
 from overreach.baselines.weighted import weighted
 from overreach.control import HandController
-from overreach.experiments.law_alone import LawAlone
 from overreach.law.authority import ee_velocity
 from overreach.law.blend import step
 from overreach.law.laws import exact, paper
@@ -20,6 +19,7 @@ from overreach.law.workspace import Workspace
 from overreach.model.planar import Arm2R, PlanarRobot
 from overreach.plugs import LAWS, load_law, names
 from overreach.robots.kinematic import KinematicRobot
+from overreach.run.law_alone import LawAlone
 from overreach.types import Frame, Verdict
 from tests.strategies import speeds
 

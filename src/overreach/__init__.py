@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from overreach.control import HandController
     from overreach.errors import OverreachError, SetupError
-    from overreach.experiments.run import simulate
-    from overreach.experiments.scenario import load_scenario
     from overreach.gate.gate import Gate
     from overreach.gate.limits import Limits
     from overreach.law.blend import smoothstep, step, tanh
@@ -22,6 +20,8 @@ if TYPE_CHECKING:
     from overreach.model.planar import PlanarRobot
     from overreach.robots.base import Robot
     from overreach.robots.kinematic import KinematicRobot
+    from overreach.run.scenario import load_scenario
+    from overreach.run.simulate import simulate
     from overreach.types import BaseTwist, Frame, RobotState, Split, Verdict
 
 __version__ = "0.1.0"
@@ -30,8 +30,8 @@ _HOMES = {
     "HandController": "control",
     "OverreachError": "errors",
     "SetupError": "errors",
-    "simulate": "experiments.run",
-    "load_scenario": "experiments.scenario",
+    "simulate": "run.simulate",
+    "load_scenario": "run.scenario",
     "Gate": "gate.gate",
     "Limits": "gate.limits",
     "smoothstep": "law.blend",

@@ -91,12 +91,12 @@ def simulate(
     """
     import msgspec
 
-    from overreach.experiments.files import check_writable, write_csv
-    from overreach.experiments.metrics import cost_per_step
-    from overreach.experiments.run import law_of
-    from overreach.experiments.run import simulate as run_scenario
-    from overreach.experiments.scenario import load_scenario
-    from overreach.experiments.summary import table
+    from overreach.run.files import check_writable, write_csv
+    from overreach.run.metrics import cost_per_step
+    from overreach.run.scenario import load_scenario
+    from overreach.run.simulate import law_of
+    from overreach.run.simulate import simulate as run_scenario
+    from overreach.run.summary import table
 
     if out is not None:
         check_writable(out, "--out")
@@ -119,7 +119,7 @@ def reproduce(out: Path) -> None:
     Args:
         out: Folder to write to: report.html, headline.md, results.json, figures/ and data/.
     """
-    from overreach.experiments.reproduce.run import reproduce as write_report
+    from overreach.reproduce.run import reproduce as write_report
 
     write_report(out)
     print(f"report: {out / 'report.html'}")
@@ -134,7 +134,7 @@ def bench(json: Path | None = None) -> None:
     """
     from overreach.bench.report import text
     from overreach.bench.run import measure
-    from overreach.experiments.files import check_writable, write_json
+    from overreach.run.files import check_writable, write_json
 
     if json is not None:
         check_writable(json, "--json")

@@ -1,4 +1,4 @@
-"""From a gated command to rates: feedback, frame, law, residual, limits, arm, guard. Loop and experiments share it."""
+"""From a gated command to rates: feedback, frame, law, residual, limits, arm, guard. Loop and scenarios share it."""
 
 from __future__ import annotations
 

@@ -17,11 +17,11 @@ from overreach.baselines.solver import SOLVERS, solver
 from overreach.baselines.weighted import weighted
 from overreach.control import HandController
 from overreach.errors import SetupError, UnknownNameError
-from overreach.experiments.run import simulate
 from overreach.law.authority import ee_velocity
 from overreach.law.laws import Law
 from overreach.model.planar import PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
+from overreach.run.simulate import simulate
 from overreach.types import Verdict
 from tests.strategies import bearings, lengths, speeds
 

@@ -62,10 +62,13 @@ def test_the_report_says_what_was_measured_and_what_was_missed(monkeypatch: pyte
     text = report.text(found)
     missed = [one for one in found["targets"] if not one["reached"]]
     assert "batch, control steps per second" in {one["name"] for one in missed}
+    lines = text.splitlines()
     for one in found["targets"]:
-        assert one["name"] in text
-    for one in missed:
-        assert one["reason"] in text
+        assert set(one) == {"name", "target", "value", "reached"}  # the number and the target, and no excuse
+        line = next(line for line in lines if one["name"] in line and line.startswith(("  reached", "  MISSED")))
+        assert f"{one['value']:.4g}  of {one['target']:.4g}" in line
+        assert line.endswith(f"{one['value'] / one['target']:.0%}")
+        assert ("MISSED" in line) is not one["reached"]
     assert text.count("MISSED") == len(missed)
 
 

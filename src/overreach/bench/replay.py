@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import final
 
 from overreach.control import HandController
-from overreach.experiments.scenario import load_scenario
 from overreach.law.laws import Law
 from overreach.robots.kinematic import KinematicRobot
+from overreach.run.scenario import load_scenario
 from overreach.types import RobotState, Step
 
 DT = 0.02

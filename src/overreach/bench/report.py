@@ -91,7 +91,6 @@ def _targets(targets: list[dict[str, Any]]) -> str:
     lines = ["What this project set out to reach"]
     for one in targets:
         mark = "reached" if one["reached"] else "MISSED "
-        lines.append(f"  {mark}  {one['name']:<76}{one['value']:>10.4g}  of {one['target']:.4g}")
-        if not one["reached"]:
-            lines.append(f"           {one['value'] / one['target']:.0%} of it: {one['reason']}")
+        part = one["value"] / one["target"]
+        lines.append(f"  {mark}  {one['name']:<76}{one['value']:>10.4g}  of {one['target']:<8.4g}{part:>5.0%}")
     return "\n".join(lines)

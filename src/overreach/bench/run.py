@@ -19,33 +19,16 @@ ROUNDS = 20
 
 
 class Target(Record, frozen=True):
-    """What is to be reached, what was, and why not where it was not."""
+    """What is to be reached, and what was."""
 
     name: str
     target: float
     value: float
-    reason: str
 
     @property
     def reached(self) -> bool:
         """Whether the value is at least the target."""
         return self.value >= self.target
-
-
-CALL = (
-    "half of the compiled step is the call from Python (see `empty call` above), "
-    "and this QP has its model written out in closed form"
-)
-REASONS = {
-    "mean": CALL,
-    "max": "the longest call of a round is the system's (interrupts, the other tenants of the machine), not the step's",
-    "min": CALL,
-    "default": (
-        "the interpreter needs about 1.5 us for the step's arithmetic, and qpsolvers with quadprog only about 30: "
-        "compiled, the same source is there"
-    ),
-    "batch": "two threads of vector code on these cores give no more; see the throughput by threads",
-}
 
 
 def time_steps(rounds: int, samples: int = 1_000, tell: Callable[[int], object] = lambda done: None) -> dict[str, Any]:
@@ -105,12 +88,12 @@ def targets(found: dict[str, Any]) -> list[Target]:
     fastest = found["ratios"].get("fastest_qp")
     if fastest:
         name = f"compiled step against the fastest QP's whole step ({found['fastest_qp']})"
-        reached = [Target(f"{name}, {key}", PAPER[key], fastest[key], REASONS[key]) for key in PAPER]
+        reached = [Target(f"{name}, {key}", PAPER[key], fastest[key]) for key in PAPER]
     default = found["ratios"]["default_qp"]["mean"]
-    reached.append(Target("plain step against qpsolvers + quadprog, mean", PAPER["mean"], default, REASONS["default"]))
+    reached.append(Target("plain step against qpsolvers + quadprog, mean", PAPER["mean"], default))
     if "batch" in found:
         value = found["batch"]["steps_per_s"]
-        reached.append(Target("batch, control steps per second", BATCH_TARGET, value, REASONS["batch"]))
+        reached.append(Target("batch, control steps per second", BATCH_TARGET, value))
     return reached
 
 
@@ -131,8 +114,6 @@ def measure(rounds: int = ROUNDS, progress: bool = True) -> dict[str, Any]:
         found = {"machine": describe(), **time_steps(rounds, tell=lambda done: bar.update(1))}
         found["batch"] = batch.measure(tell=further)
     found["targets"] = [
-        {"name": one.name, "target": one.target, "value": one.value, "reached": one.reached,
-         "reason": "" if one.reached else one.reason}
-        for one in targets(found)
-    ]  # fmt: skip
+        {"name": one.name, "target": one.target, "value": one.value, "reached": one.reached} for one in targets(found)
+    ]
     return found

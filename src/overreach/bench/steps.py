@@ -15,7 +15,6 @@ from overreach.baselines.solver import DIRECT, SOLVERS
 from overreach.baselines.weighted import weighted
 from overreach.bench.measure import Candidate
 from overreach.bench.replay import Replay
-from overreach.experiments.run import Row, simulate
 from overreach.law.authority import exact, paper
 from overreach.law.blend import smoothstep, tanh
 from overreach.law.frame import hand
@@ -23,6 +22,7 @@ from overreach.law.laws import constants
 from overreach.law.laws import exact as exact_law
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
+from overreach.run.simulate import Row, simulate
 
 SLOW_EVERY = 5
 """Solvers that take half a millisecond run in every fifth round."""

@@ -7,9 +7,9 @@ import msgspec
 import pytest
 
 from overreach.errors import SetupError
-from overreach.experiments.run import Row, simulate
-from overreach.experiments.scenario import builtin_scenarios, load_scenario, parse_scenario
 from overreach.plugs import LAWS, names
+from overreach.run.scenario import builtin_scenarios, load_scenario, parse_scenario
+from overreach.run.simulate import Row, simulate
 from overreach.types import Frame
 
 COMMAND = "[command]\nduration = 1.0\nsegments = [{t = 0.0, v_c = 0.1, w_c = 0.0}]\n"

@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 from overreach.arm.planar import forward, hand_in_world, polar_rates, wrap
 from overreach.control import HandController
-from overreach.experiments.law_alone import LawAlone
-from overreach.experiments.scenario import Scenario, load_scenario
-from overreach.experiments.summary import Summary, summarise
 from overreach.gate.limits import limit_speed, slew
 from overreach.law.authority import ee_velocity
 from overreach.law.laws import Law
 from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
+from overreach.run.law_alone import LawAlone
+from overreach.run.scenario import Scenario, load_scenario
+from overreach.run.summary import Summary, summarise
 from overreach.types import Step, Verdict
 
 

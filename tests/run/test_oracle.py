@@ -12,14 +12,14 @@ from scipy.linalg import expm
 from scipy.special import wrightomega
 
 from overreach.arm.planar import hand_in_world, inverse
-from overreach.experiments.law_alone import LawAlone
-from overreach.experiments.run import Run, law_of, simulate, steps
-from overreach.experiments.scenario import parse_scenario
 from overreach.law.blend import tanh
 from overreach.law.laws import exact
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.robots.kinematic import KinematicRobot
+from overreach.run.law_alone import LawAlone
+from overreach.run.scenario import parse_scenario
+from overreach.run.simulate import Run, law_of, simulate, steps
 from overreach.types import BaseTwist, Frame, RobotState
 
 V = 0.4

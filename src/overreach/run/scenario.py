@@ -23,13 +23,13 @@ from typing import Any
 import msgspec
 
 from overreach.errors import ScenarioError, UnknownNameError
-from overreach.experiments.command import FASTEST, Segment, read_commands
 from overreach.gate.limits import Limits
 from overreach.law.blend import Blend, blend_from
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
 from overreach.plugs import load_robot
 from overreach.robots.imperfect import Imperfection
+from overreach.run.command import FASTEST, Segment, read_commands
 from overreach.types import Command, Frame, Record
 
 LONGEST_S = 1e6
@@ -140,7 +140,7 @@ class Scenario(Record, frozen=True):
 
 def builtin_scenarios() -> dict[str, str]:
     """Return the built-in scenarios: name -> TOML text."""
-    folder = importlib.resources.files("overreach.experiments").joinpath("data")
+    folder = importlib.resources.files("overreach.run").joinpath("data")
     return {
         entry.name.removesuffix(".toml"): entry.read_text("utf-8")
         for entry in sorted(folder.iterdir(), key=lambda entry: entry.name)

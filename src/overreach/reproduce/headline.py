@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from overreach.experiments.reproduce.words import number
+from overreach.reproduce.words import number
 
 LAWS = {
     "exact": "`exact`",

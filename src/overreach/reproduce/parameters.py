@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from overreach.baselines import holistic, qp, weighted
 from overreach.baselines.solver import SETTINGS
-from overreach.experiments.reproduce.lab import Lab, Section, Table
-from overreach.experiments.scenario import builtin_scenarios, load_scenario
 from overreach.law import authority
 from overreach.law.blend import smoothstep, tanh
 from overreach.model.planar import load_planar
+from overreach.reproduce.lab import Lab, Section, Table
+from overreach.run.scenario import builtin_scenarios, load_scenario
 
 PAPER, OURS = "the paper", "ours"
 

@@ -10,11 +10,11 @@ from typing import Any
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from overreach.experiments.files import write_csv, write_table, write_text
-from overreach.experiments.reproduce import look
-from overreach.experiments.run import Run, simulate
-from overreach.experiments.scenario import Scenario, load_scenario
 from overreach.law.laws import Law
+from overreach.reproduce import look
+from overreach.run.files import write_csv, write_table, write_text
+from overreach.run.scenario import Scenario, load_scenario
+from overreach.run.simulate import Run, simulate
 
 CSV_PERIOD_S, CSV_ROWS = 0.01, 6_000
 """Runs go to CSV at this period, long ones in about so many rows: a figure shows no more."""

@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from overreach.experiments import metrics
-from overreach.experiments.run import Row, simulate
-from overreach.experiments.scenario import load_scenario, parse_scenario
-from overreach.experiments.summary import LINES, table
 from overreach.law.blend import step
 from overreach.law.laws import exact, paper
 from overreach.law.workspace import Workspace
+from overreach.run import metrics
+from overreach.run.scenario import load_scenario, parse_scenario
+from overreach.run.simulate import Row, simulate
+from overreach.run.summary import LINES, table
 from overreach.types import Split
 
 STILL = Row(*[0.0] * len(Row._fields))

@@ -19,7 +19,7 @@ from overreach.law.workspace import Workspace
 from overreach.types import Frame
 
 if TYPE_CHECKING:
-    from overreach.experiments.run import Row
+    from overreach.run.simulate import Row
 
 MOST_CALLS = 2_000
 """Steps of a run on which its law is timed."""

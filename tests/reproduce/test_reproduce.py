@@ -14,8 +14,8 @@ from playwright.sync_api import Browser
 
 from docs.headline import BEGIN, END
 from overreach.errors import SetupError
-from overreach.experiments.reproduce import chatter, lab, look, run
-from overreach.experiments.reproduce.words import number
+from overreach.reproduce import chatter, lab, look, run
+from overreach.reproduce.words import number
 
 EXACT = 1e-12
 FIGURES = {"blending", "arbitrary", "rivals", "cost", "creep", "distortion", "straight", "chatter"} | {

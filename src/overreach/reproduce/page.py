@@ -7,13 +7,13 @@ from typing import Any
 
 from overreach import __version__
 from overreach.bench.run import PAPER
-from overreach.experiments.reproduce.lab import Picture, Section, Table
-from overreach.experiments.reproduce.words import number
+from overreach.reproduce.lab import Picture, Section, Table
+from overreach.reproduce.words import number
 
 
 def html(sections: list[Section], results: dict[str, Any]) -> str:
     """Return the whole page."""
-    style = importlib.resources.files("overreach.experiments.reproduce").joinpath("report.css").read_text("utf-8")
+    style = importlib.resources.files("overreach.reproduce").joinpath("report.css").read_text("utf-8")
     contents = "".join(f'<li><a href="#{one.key}">{one.title}</a></li>' for one in sections)
     body = "".join(_section(place, one) for place, one in enumerate(sections, start=1))
     return f"""<!doctype html>

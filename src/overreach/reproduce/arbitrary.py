@@ -7,11 +7,11 @@ from math import cos, sin
 
 from matplotlib.axes import Axes
 
-from overreach.experiments.reproduce.lab import Lab, Section
-from overreach.experiments.reproduce.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
-from overreach.experiments.run import Run
 from overreach.law.blend import tanh
 from overreach.law.laws import exact, paper
+from overreach.reproduce.lab import Lab, Section
+from overreach.reproduce.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
+from overreach.run.simulate import Run
 
 
 def section(lab: Lab) -> Section:

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from overreach.errors import SetupError
-from overreach.experiments.files import try_to_write
 from overreach.extras import require
+from overreach.run.files import try_to_write
 
 if TYPE_CHECKING:
-    from overreach.experiments.reproduce.lab import Section
+    from overreach.reproduce.lab import Section
 
 NEEDED = "figures,qp"
 SECTIONS = {
@@ -68,10 +68,10 @@ def reproduce(out: Path, progress: bool = True) -> dict[str, Any]:
 
 def work(name: str, out: Path) -> Done:
     """Do one section; return it with its results: physics and timing."""
-    from overreach.experiments.reproduce.lab import Lab
+    from overreach.reproduce.lab import Lab
 
     lab = Lab(out)
-    section = import_module(f"overreach.experiments.reproduce.{name}").section(lab)
+    section = import_module(f"overreach.reproduce.{name}").section(lab)
     return section, lab.physics, lab.timing
 
 
@@ -109,9 +109,9 @@ def _leave_ctrl_c_to_the_parent() -> None:
 
 
 def _write(out: Path, done: list[Done]) -> dict[str, Any]:
-    from overreach.experiments.files import write_json, write_text
-    from overreach.experiments.reproduce import page
-    from overreach.experiments.reproduce.headline import headline
+    from overreach.reproduce import page
+    from overreach.reproduce.headline import headline
+    from overreach.run.files import write_json, write_text
 
     results: dict[str, Any] = {"physics": {}, "timing": {}}
     for _, physics, timing in done:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from overreach.experiments.metrics import total_variation
-from overreach.experiments.reproduce.lab import Lab, Section, Table
-from overreach.experiments.reproduce.look import BASE, HAND, panels
-from overreach.experiments.run import Run
 from overreach.law.blend import smoothstep, tanh
 from overreach.law.laws import Law, exact, paper, switch
+from overreach.reproduce.lab import Lab, Section, Table
+from overreach.reproduce.look import BASE, HAND, panels
+from overreach.run.metrics import total_variation
+from overreach.run.simulate import Run
 
 LAWS: tuple[tuple[str, str, Law], ...] = (
     ("switch", "switch", switch()),

@@ -6,11 +6,11 @@ from math import hypot, tan
 
 import numpy as np
 
-from overreach.experiments.reproduce.lab import Lab, Section
-from overreach.experiments.reproduce.look import ARM, BASE, INK, legend, limit, panels
 from overreach.law.authority import ee_velocity
 from overreach.law.blend import tanh
 from overreach.law.laws import Law, exact, paper
+from overreach.reproduce.lab import Lab, Section
+from overreach.reproduce.look import ARM, BASE, INK, legend, limit, panels
 
 BEYOND = 0.95
 """Where it is drawn: well beyond L_max = 0.85 m, where the base has everything (mu = 1 to 5e-5)."""

@@ -7,10 +7,10 @@ from math import atan2, cos, sin
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
-from overreach.experiments.reproduce.lab import Lab, Section
-from overreach.experiments.reproduce.look import ARM, BASE, HAND, MUTED, panels, thin
-from overreach.experiments.run import Row, Run
 from overreach.law.laws import exact, paper
+from overreach.reproduce.lab import Lab, Section
+from overreach.reproduce.look import ARM, BASE, HAND, MUTED, panels, thin
+from overreach.run.simulate import Row, Run
 
 AIM = 0.4
 """Where the hand points at the start, and is to go [rad]."""

@@ -9,11 +9,11 @@ import msgspec
 from matplotlib.axes import Axes
 
 from overreach.baselines.weighted import weighted
-from overreach.experiments.reproduce.lab import Lab, Section, Table
-from overreach.experiments.reproduce.look import ARM, BASE, HAND, limit, panels, thin
-from overreach.experiments.run import Run, simulate
-from overreach.experiments.scenario import Scenario, load_scenario
-from overreach.experiments.summary import LINES, Summary
+from overreach.reproduce.lab import Lab, Section, Table
+from overreach.reproduce.look import ARM, BASE, HAND, limit, panels, thin
+from overreach.run.scenario import Scenario, load_scenario
+from overreach.run.simulate import Run, simulate
+from overreach.run.summary import LINES, Summary
 from overreach.types import Frame
 
 LAWS = ("exact", "paper", "switch", "separate", "weighted", "qp", "holistic")

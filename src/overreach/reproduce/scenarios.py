@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib import pyplot as plt
 from scipy.special import wrightomega
 
-from overreach.experiments.reproduce.lab import Lab, Picture, Section
-from overreach.experiments.reproduce.look import ARM, BASE, HAND, INK, MUTED, limit, thin
-from overreach.experiments.run import Run
 from overreach.law.laws import exact
+from overreach.reproduce.lab import Lab, Picture, Section
+from overreach.reproduce.look import ARM, BASE, HAND, INK, MUTED, limit, thin
+from overreach.run.simulate import Run
 
 NAMES = ("outward", "inward", "left", "right")
 TITLES = {

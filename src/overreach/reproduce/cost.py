@@ -6,9 +6,9 @@ from typing import Any
 
 from overreach.bench.machine import describe
 from overreach.bench.run import PAPER, time_steps
-from overreach.experiments.reproduce.lab import Lab, Section, Table
-from overreach.experiments.reproduce.look import ARM, BASE, HAND, MUTED, panels
-from overreach.experiments.reproduce.words import number
+from overreach.reproduce.lab import Lab, Section, Table
+from overreach.reproduce.look import ARM, BASE, HAND, MUTED, panels
+from overreach.reproduce.words import number
 
 ROUNDS, SAMPLES = 5, 300
 COLUMNS = ("mean", "p50", "p99", "max", "min")

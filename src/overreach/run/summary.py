@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from overreach.experiments import metrics
 from overreach.law.laws import Law
+from overreach.run import metrics
 from overreach.types import Record, Verdict
 
 if TYPE_CHECKING:
-    from overreach.experiments.run import Row
-    from overreach.experiments.scenario import Scenario
+    from overreach.run.scenario import Scenario
+    from overreach.run.simulate import Row
 
 
 class Summary(Record, frozen=True):
-    """What happened; formulas and units are in `overreach.experiments.metrics`.
+    """What happened; formulas and units are in `overreach.run.metrics`.
 
     ee_error_rms, ee_error_max [m/s]; ee_path_error [m]; hand_travel, base_travel [m]; base_turn [rad];
     peak_v_b [m/s], peak_w_b [rad/s], peak_dtheta [rad/s], peak_ddtheta [rad/s^2] (of the worse joint);

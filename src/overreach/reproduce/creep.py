@@ -6,11 +6,11 @@ from math import log, log1p
 
 import msgspec
 
-from overreach.experiments.reproduce.lab import Lab, Section
-from overreach.experiments.reproduce.look import ARM, BASE, HAND, INK, STOP, legend, limit, panels, thin
-from overreach.experiments.scenario import load_scenario
 from overreach.law.blend import Blend, smoothstep, tanh
 from overreach.law.laws import exact
+from overreach.reproduce.lab import Lab, Section
+from overreach.reproduce.look import ARM, BASE, HAND, INK, STOP, legend, limit, panels, thin
+from overreach.run.scenario import load_scenario
 
 BLENDS: tuple[tuple[str, Blend, str], ...] = (
     ("tanh_10", tanh(10.0, 10.0), HAND),

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from overreach.errors import SetupError
-from overreach.experiments.run import Row
+from overreach.run.simulate import Row
 
 
 def check_writable(path: Path, option: str) -> None:

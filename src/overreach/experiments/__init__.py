@@ -1,1 +1,0 @@
-"""Scenarios, headless runs and what they show."""

@@ -1,0 +1,1 @@
+"""Scenarios, run headless, and what they show."""
