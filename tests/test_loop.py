@@ -9,12 +9,12 @@ import pytest
 
 from overreach.clock import SteppedClock
 from overreach.link.endpoint import free_port
-from overreach.link.messages import State
+from overreach.link.messages import Refused, Restart, Settings, State
 from overreach.link.robot_end import RobotEnd
 from overreach.loop import Loop
 from overreach.model.planar import load_planar
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import BaseTwist, RobotState, Split, Stick, Verdict
+from overreach.types import BaseTwist, Frame, RobotState, Split, Stick, Verdict
 
 PERIOD = 0.005
 
@@ -191,8 +191,8 @@ def test_a_robot_that_cannot_be_written_to_is_a_fault(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize(("slow", "fault"), [(2, False), (3, True)])
-def test_a_law_that_is_slow_three_times_in_a_row_is_a_fault(bench: Bench, slow: int, fault: bool) -> None:
-    """A decision that takes longer than a period is an overrun; three in a row are a fault of the law."""
+def test_a_law_that_is_slow_three_times_is_a_fault(bench: Bench, slow: int, fault: bool) -> None:
+    """A decision that takes longer than a period is an overrun; three of late are a fault of the law."""
     law = bench.loop.controller.law
     split, calls = law.split, 0
 
@@ -242,4 +242,84 @@ def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.Mon
         (verdict.value, verdict.look, verdict.sentence)
         for verdict in (Verdict.NO_SOLUTION, Verdict.STOPPED, Verdict.ENDING)
     ]
-    assert states[60].scale == 0.0
+    assert states[30].scale == 0.0
+
+
+@pytest.mark.parametrize(("every", "takes"), [(1, 0.1), (2, 0.03), (3, 0.04), (100, 0.06)])
+def test_a_slow_law_does_not_stretch_a_stop(bench: Bench, every: int, takes: float) -> None:
+    """However slow a law is, and how often: after a stop zero is written within v/a and what three decisions took."""
+    law = bench.loop.controller.law
+    calls = 0
+    stopped_at = still_at = 0.0
+
+    class Slow:
+        name, frame, closes_residual = "slow", law.frame, law.closes_residual
+        workspace, blend, mount = law.workspace, law.blend, law.mount
+
+        def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
+            nonlocal calls
+            calls += 1
+            if stopped_at and calls % every == 0:
+                bench.clock.t += takes
+            return law.split(l, psi, u_r, u_t)
+
+    bench.loop.controller.configure(cast(Any, Slow()))
+
+    def stop(k: int) -> None:
+        nonlocal stopped_at, still_at
+        if k == 300:
+            stopped_at = bench.clock.now()
+            bench.loop.gate.latch.stop()
+        if stopped_at and not still_at and not any(bench.driver.written[-1]):
+            still_at = bench.clock.now()
+
+    bench.drive(500, stop)
+    bench.check()
+    assert 0.0 < still_at - stopped_at <= 0.6 / 3.5 + 3 * PERIOD + 3 * takes
+
+
+def test_the_end_makes_up_for_nothing(bench: Bench) -> None:
+    """A write that is held up while the robot comes to rest is not made up for: no two writes in one period."""
+    at: list[float] = []
+    write = bench.driver.write
+
+    def held_up(twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
+        write(twist, dtheta, now)
+        at.append(bench.clock.now())
+        if len(at) == 305:
+            bench.clock.t += 0.1
+
+    bench.driver.write = held_up  # type: ignore[method-assign]  # the real one, and a note of when it was
+    bench.drive(300)
+    bench.check()
+    assert all(later - earlier >= 0.999 * PERIOD for earlier, later in pairwise(at[:-1]))
+
+
+def test_settings_are_used_all_or_none(bench: Bench) -> None:
+    """A law that cannot be used leaves law, frame and speed as they were."""
+    loop = bench.loop
+    before = (loop.controller.law, loop.controller.name, loop.gate.speed_scale)
+
+    class Half:
+        name, frame, closes_residual, workspace, blend, mount = "half", Frame.WORLD, True, None, None, None
+
+    loop._law = lambda settings: cast(Any, Half())  # type: ignore[method-assign]
+    with pytest.raises(AttributeError):
+        loop._configure(Settings(speed_scale=0.3))
+    assert (loop.controller.law, loop.controller.name, loop.gate.speed_scale) == before
+
+
+def test_at_rest_is_when_nothing_is_written(bench: Bench) -> None:
+    """A robot whose command is zero but which is still ramping is not at rest: it is not put back to its start."""
+
+    def let_go(k: int) -> None:
+        loop = bench.loop
+        if k == 300:
+            loop.controller.guard.latch("why")
+        if k > 300:
+            assert loop.resting is not any(loop.controller.guard.written) or not loop.gate.resting
+        if k > 302 and any(loop.controller.guard.written):
+            assert isinstance(loop._carry_out(Restart(), bench.clock.now()), Refused)
+
+    bench.drive(400, let_go)
+    bench.check()

@@ -33,7 +33,7 @@ ARROWS: dict[str, set[str]] = {
     "fast": {"errors", "law", "model", "arm"},
     "baselines": {"errors", "extras", "types", "law", "model", "arm"},
     "robots": {"errors", "types", "model", "arm"},
-    "plugs": {"errors", "law", "model"},
+    "plugs": {"errors", "types", "law", "model"},
     "testing": {"types", "law"},
     "control": {"errors", "types", "gate", "law", "model", "arm"},
     "loop": {"errors", "types", "clock", "timing", "link", "gate", "law", "model", "arm", "robots", "plugs", "control"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, inf, isfinite
+from operator import add
 
 import msgspec
 
@@ -14,13 +15,13 @@ from overreach.gate.guard import Guard
 from overreach.gate.limits import clamp_change, feasible_scale
 from overreach.law.authority import arm_residual
 from overreach.law.frame import FRAMES, heading_rate
-from overreach.law.laws import JointLaw, Law, UnusableError, check_split
+from overreach.law.laws import JointLaw, Law, UnusableError, checked
 from overreach.law.lead import lead
 from overreach.model.planar import PlanarRobot
 from overreach.types import Frame, Motion, PolarState, RobotState, Split, Step, Verdict, weightier
 
 REST = (0.0, 0.0, 0.0, 0.0)
-STILL = Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+STILL = Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 _with = msgspec.structs.replace
 
@@ -29,9 +30,8 @@ class HandController:
     """Turns (v_c, w_c) into base twist and joint rates. Keeps the hand's heading and what it last asked for.
 
     Its limits hold whatever the law says and the robot reports; there is no switch for them. Where that cannot be, it
-    ramps to zero and says FAULT until `reset`. whole_steps: whether joint rates are chosen so that the
-    period ends exactly at (l + v_m dt, psi + w_m dt), or from the Jacobian. ramp_s: how long the command's own ramp to
-    zero takes [s], where that is longer than the robot's.
+    ramps to zero and says FAULT until `reset`. whole_steps: whether joint rates are chosen so that the period ends
+    exactly at (l + v_m dt, psi + w_m dt), or from the Jacobian. ramp_s: how long the command's own ramp takes [s].
     """
 
     def __init__(
@@ -46,22 +46,22 @@ class HandController:
 
     def configure(self, law: Law, frame: Frame | None = None) -> None:
         """Change the law and the command frame; with another frame the hand's heading starts anew at its bearing."""
-        chosen = frame or law.frame
+        chosen = frame or law.frame  # all that may raise comes first
+        name, closes = str(law.name)[:LONGEST_NAME], bool(law.closes_residual)
+        mount = (law.mount.s_x, law.mount.s_y, law.mount.yaw)
         if getattr(self, "frame", None) is not chosen:
             self._theta_e: float | None = None
-        self.law = law
-        self._name = f"The law {str(law.name)[:LONGEST_NAME]!r}"
+        self.law, self.name, self._mount, self._closes = law, name, mount, closes
         self._joint_law = law if isinstance(law, JointLaw) else None
         self.frame: Frame = chosen
         self._to_polar = FRAMES[chosen]
-        mount = law.mount
-        self._mount = (mount.s_x, mount.s_y, mount.yaw)
 
     def restart(self) -> None:
         """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
         arm, start = self.model.arm, self.model.start
         self._theta_e = None
         self._now = 0.0
+        self._rest = STILL
         self._believed = RobotState(
             -inf, 0.0, 0.0, 0.0, 0.0, 0.0, inverse(start.l, start.psi, *arm.links, arm.elbow), REST[2:]
         )
@@ -115,19 +115,21 @@ class HandController:
         if motion is None:
             motion = Motion.NONE if v_c == 0.0 and w_c == 0.0 else Motion.ALLOWED
         try:
-            step = self._decide(state, v_c, w_c, dt)
-        except Exception as error:  # as above, a law
+            step = self._decide(state, v_c, w_c, dt) if self._asks(motion) else self._still(state)
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException as error:  # as above, a law; some libraries' panics are no Exception
             what = f"answered {error}" if isinstance(error, UnusableError) else f"raised {told(error)}"
-            self.guard.latch(f"{self._name} {what}.")
+            self.guard.latch(f"The law {self.name!r} {what}.")
             step = self._still(state)
         if step.split.verdict is not Verdict.MOVING:
             motion = Motion.NONE  # the law has nothing to give
-        step = self._last_word(step, motion, dt)
+        step = self._last_word(wanted := step, motion, dt)
         self._feedback.asked.add(step.rates, self._now)
         if self.guard.fault:
             return _with(step, verdict=Verdict.FAULT, fault=self.guard.fault)
         turn = heading_rate(self.frame, w_c * step.scale)
-        if turn is not None:
+        if turn is not None and step is wanted:
             self._theta_e = wrap(step.polar.theta_e + turn * dt)
         return step if finite else _with(step, verdict=weightier(Verdict.NOT_FINITE, step.verdict))
 
@@ -144,6 +146,7 @@ class HandController:
                 return
             state = self._believed
         self._now = now if now is not None else state.t if state.t > stamp else self._now + dt
+        state = state.plain
         positions = (complex(state.x_b, state.y_b), state.theta_b, *state.theta)
         wrong = self._feedback.check(state.t, positions, (state.v_b, state.w_b, *state.dtheta), self._now)
         if wrong:
@@ -154,7 +157,7 @@ class HandController:
     def _decide(self, state: RobotState, v_c: float, w_c: float, dt: float) -> Step:
         """Return what law, residual, limits and arm make of a command."""
         polar = self.locate(state)
-        l, psi, mount, closes = polar.l, polar.psi, self._mount, self.law.closes_residual
+        l, psi, mount, closes = polar.l, polar.psi, self._mount, self._closes
         u_r, u_t = self.commanded(v_c, w_c, l, psi, state.theta_b, polar.theta_e)
         split = self._split(state, l, psi, u_r, u_t)
         full, verdict = split.scale, split.verdict
@@ -173,7 +176,7 @@ class HandController:
             v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, v_b + slip_v, w_b + slip_w, mount)
             owed = self._solved(state, *arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount))
         own = split.dtheta
-        joints = self._solved(state, v_m, w_m) if own is None else _sum(own, owed, 1.0)
+        joints = self._solved(state, v_m, w_m) if own is None else tuple(map(add, own, owed))
 
         free = room(self.model.arm, state.theta, dt)
         scale, why = self._limit((v_b, w_b, *joints), owed, free, dt)
@@ -185,10 +188,13 @@ class HandController:
             v_m, w_m = arm_residual(l, psi, u_r * k, u_t * k, v_b + slip_v, w_b + slip_w, mount)
         else:
             v_m, w_m = v_m * scale, w_m * scale
-        dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, own and _sum(own, owed, scale), free, dt)
+        if own is not None:
+            own = tuple(rate * scale + more for rate, more in zip(own, owed, strict=True))
+        dtheta, v_m, w_m, why = self._joints(state, v_m, w_m, own, free, dt)
         if why is not Verdict.MOVING:
             verdict = why
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, own)
+        self._rest = Split(split.mu, split.sigma, 0.0, 0.0, 0.0, 0.0)
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, split.dtheta)
         return Step(state, polar, u_r, u_t, applied, dtheta, full * scale, verdict)
 
     def _split(self, state: RobotState, l: float, psi: float, u_r: float, u_t: float) -> Split:
@@ -196,12 +202,11 @@ class HandController:
         lag = self.model.base.lag
         if self._joint_law is not None:
             split = self._joint_law.split_joints(state.theta, u_r, u_t)
-        elif lag > 0.0 and self.law.closes_residual:
+        elif lag > 0.0 and self._closes:
             split = self.law.split(*lead(l, psi, u_r, u_t, state.v_b, state.w_b, lag, self._mount))
         else:
             split = self.law.split(l, psi, u_r, u_t)
-        check_split(split)
-        return split
+        return checked(split)
 
     def _solved(self, state: RobotState, v_m: float, w_m: float) -> tuple[float, float]:
         """Return the joint rates [rad/s] of the hand's v_m [m/s], w_m [rad/s], by the Jacobian."""
@@ -288,9 +293,8 @@ class HandController:
 
     def _still(self, state: RobotState) -> Step:
         """Return a step in which nothing moves."""
-        return Step(state, self.locate(state), 0.0, 0.0, STILL, REST[2:], 0.0, Verdict.MOVING)
+        return Step(state, self.locate(state), 0.0, 0.0, self._rest, REST[2:], 1.0, Verdict.MOVING)
 
-
-def _sum(own: tuple[float, ...], owed: tuple[float, ...], scale: float) -> tuple[float, ...]:
-    """Return joint rates that a law has decided itself, scaled, and what the joints owe the base."""
-    return tuple(rate * scale + more for rate, more in zip(own, owed, strict=True))
+    def _asks(self, motion: Motion) -> bool:
+        """Say whether the law is asked: not while nothing may move, so that it cannot hold that up either."""
+        return motion is not Motion.NONE and not self.guard.fault

@@ -26,6 +26,7 @@ def told(error: BaseException) -> str:
     """Return what any exception says, its type first, as one line of at most LONGEST_TOLD characters."""
     try:
         text = " ".join(f"{type(error).__name__}: {error}".split())
+        text = text.encode("utf-8", "backslashreplace").decode()  # what cannot be sent cannot be told
     except Exception:  # its own text cannot be had
         text = type(error).__name__
     return text if len(text) <= LONGEST_TOLD else f"{text[:LONGEST_TOLD]}..."

@@ -43,8 +43,11 @@ from overreach.types import Motion, RobotState, Step, Verdict, weightier
 
 STATE_PERIOD_S = 1.0 / 60.0
 """A state is sent when a stick was accepted, and at the latest after this [s]."""
-SLOW_MOST = 3
-"""Decisions in a row that may take longer than a period."""
+SLOW_MOST = 3.0
+FORGIVEN = 0.1
+"""As many decisions as this may take longer than a period; each that does not takes this much of it back."""
+HUNG_S = 0.05
+"""A decision that takes this long [s] is a fault by itself."""
 
 
 @final
@@ -73,7 +76,7 @@ class Loop:
         self._sent_at = -inf
         self._told = (0.0, 0.0, 0.0)
         self._told_at = -inf
-        self._slow = 0
+        self._slow = 0.0
 
     def run(self, running: Callable[[], bool]) -> None:
         """Tick at `rate` while `running()`. An overrun is counted and the missed ticks are left out.
@@ -128,11 +131,11 @@ class Loop:
             self.controller.guard.latch(f"The robot could not be written to: {told(error)}.")
 
     def _watch(self, took: float, dt: float) -> None:
-        """Latch a fault where decisions take longer than the period `dt` [s], SLOW_MOST times in a row."""
-        self._slow = self._slow + 1 if took > dt else 0
-        if self._slow >= SLOW_MOST:
-            self._slow = 0
-            law = self.controller.law.name
+        """Latch a fault where decisions took more than a period, `dt` [s], SLOW_MOST times of late, or HUNG_S once."""
+        self._slow = max(0.0, self._slow + (1.0 if took > dt else -FORGIVEN))
+        if self._slow >= SLOW_MOST or took > HUNG_S:
+            self._slow = 0.0
+            law = self.controller.name
             self.controller.guard.latch(f"The law {law!r} takes {took * 1e3:.0f} ms; a period has {dt * 1e3:g} ms.")
 
     def _come_to_rest(self, dt: float) -> None:
@@ -143,7 +146,7 @@ class Loop:
         try:
             while moving:
                 moving = any(self.controller.guard.written)
-                deadline += dt
+                deadline = max(deadline + dt, self._clock.now())  # what was missed is not made up for
                 self._clock.sleep_until(deadline)
                 step = self.controller.ramp(dt)
                 self._write(step, deadline)
@@ -151,7 +154,13 @@ class Loop:
                 with contextlib.suppress(Exception):
                     self._publish(deadline, gated, step)
         finally:
-            self._robot.stop(self._clock.now())
+            with contextlib.suppress(Exception):  # it was written zero already
+                self._robot.stop(self._clock.now())
+
+    @property
+    def resting(self) -> bool:
+        """Say whether the command is zero, and what is written as well."""
+        return self.gate.resting and not any(self.controller.guard.written)
 
     def _serve(self, now: float) -> None:
         """Carry out what was asked for since the last tick."""
@@ -163,7 +172,7 @@ class Loop:
             except OverreachError as error:
                 answer(Refused(str(error)))
             except Exception as error:  # a law that is a plug-in may raise anything: the loop goes on
-                self.gate.latch.fail(f"The robot side met {told(error)}.")
+                self.controller.guard.latch(f"The robot side met {told(error)}.")
                 answer(Refused(f"Fault: the robot side met {told(error)}."))
 
     def _carry_out(self, request: Request, now: float) -> Answer:
@@ -185,7 +194,7 @@ class Loop:
                     case Verdict.OTHER_OPERATOR:
                         return Refused("Another operator is driving. Stop is always possible.")
             case Restart():
-                if latch.armed or not self.gate.resting:
+                if latch.armed or not self.resting:
                     return Refused("Disarm first, and wait until the robot stands still.")
                 self._robot.restart(now)
                 self.controller.restart()
@@ -201,17 +210,22 @@ class Loop:
 
     def _configure(self, settings: Settings) -> None:
         """Use `settings`; raises SetupError, with nothing changed, where they cannot be used."""
-        if settings.frame is not self.controller.frame and not self.gate.resting:
+        if settings.frame is not self.controller.frame and not self.resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
         new = settings.law in names(LAWS) and not loaded(settings.law)
-        if new and not self.gate.resting:
+        if new and not self.resting:
             raise SetupError(f"Let go first: {settings.law!r} has to be loaded, which holds the loop up for a moment.")
         law, frame = self._law(settings), settings.frame
         if new:  # what came with it is here to stay: the collector is not to look through it in the middle of a drive
             gc.collect()
             gc.freeze()
+        before = self.gate.speed_scale
         self.gate.set_speed_scale(settings.speed_scale)
-        self.controller.configure(law, frame)
+        try:
+            self.controller.configure(law, frame)
+        except Exception:
+            self.gate.set_speed_scale(before)
+            raise
         self.settings = settings
         self._revision += 1
 

@@ -15,10 +15,13 @@ from overreach.law.blend import Blend
 from overreach.law.laws import Law
 from overreach.law.workspace import Mount, Workspace
 from overreach.model.planar import PlanarRobot
+from overreach.types import Frame
 
 LAWS = "overreach.laws"
 """Entry points to makers of a Law. A maker names those of these it needs, each with a default:
 workspace: Workspace, blend: Blend, mount: Mount, robot: PlanarRobot."""
+ALIKE = 0.85
+"""How much a parameter's name must be like one of GIVEN to be taken for a mistyped one."""
 GIVEN = ("workspace", "blend", "mount", "robot")
 ROBOTS = "overreach.robots"
 """Entry points to makers: () -> PlanarRobot."""
@@ -52,7 +55,7 @@ def takes(name: str) -> frozenset[str]:
     for parameter in parameters.values():
         if parameter.name in GIVEN or parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             continue
-        near = difflib.get_close_matches(parameter.name, GIVEN, n=1)
+        near = difflib.get_close_matches(parameter.name, GIVEN, n=1, cutoff=ALIKE)
         if near or parameter.default is parameter.empty:
             hint = f" Did you mean {near[0]!r}?" if near else ""
             raise SetupError(
@@ -84,6 +87,9 @@ def load_law(
     missing = [part for part in (*get_type_hints(Law), "split") if not hasattr(law, part)]
     if missing:
         raise SetupError(f"the law {name!r} lacks {', '.join(missing)}: see overreach.testing.law.check_law")
+    for part, kind in (("frame", Frame), ("workspace", Workspace), ("blend", Blend), ("mount", Mount)):
+        if not isinstance(getattr(law, part), kind):
+            raise SetupError(f"the law {name!r} has a {part} that is no {kind.__name__}: {getattr(law, part)!r}")
     return law
 
 

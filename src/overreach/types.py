@@ -12,6 +12,8 @@ import math
 
 import msgspec
 
+FLOATS = {float}
+
 
 class Record(msgspec.Struct, frozen=True, gc=False):
     """Base of the frozen, slotted records (a compiled struct: 0.1 us to make)."""
@@ -187,6 +189,16 @@ class RobotState(Record, frozen=True):
     w_b: float
     theta: tuple[float, ...]
     dtheta: tuple[float, ...]
+
+    @property
+    def plain(self) -> RobotState:
+        """The same in Python's own floats; raises where a number is none. Drivers like to report those of numpy."""
+        t, *base = numbers = (self.t, self.x_b, self.y_b, self.theta_b, self.v_b, self.w_b)
+        if set(map(type, (*numbers, *self.theta, *self.dtheta))) == FLOATS:
+            return self
+        x_b, y_b, theta_b, v_b, w_b = [float(number + 0.0) for number in base]  # a text is no number
+        joints = [tuple([float(number + 0.0) for number in one]) for one in (self.theta, self.dtheta)]
+        return RobotState(float(t + 0.0), x_b, y_b, theta_b, v_b, w_b, *joints)
 
 
 class Step(Record, frozen=True):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -173,7 +175,12 @@ def test_every_single_fault_of_a_law(field: str, bad: float, at: int, v_c: float
     side.arm()
     step = side.drive(2.5, v_c, w_c)
     side.check()
-    if math.isfinite(bad) and field not in ("scale",):
+    if v_c == 0.0 and w_c == 0.0:  # nothing to move: the law is not asked, and can do no harm
+        assert law.calls == 0
+        assert not any(map(any, side.written))
+    elif law.calls < at:
+        assert step.verdict is not Verdict.FAULT
+    elif math.isfinite(bad) and field not in ("scale",):
         assert abs(step.split.v_b) <= 0.6
     else:
         assert step.verdict is Verdict.FAULT
@@ -196,18 +203,73 @@ def test_every_single_fault_of_a_law(field: str, bad: float, at: int, v_c: float
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, dtheta=(0.1,)), "ValueError"),
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, dtheta=(0.1, math.nan)), "rates too great"),
         (Split(0.0, 0.0, 1e308, 1e308, 1e308, 1e308), "rates too great"),
+        (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict=Verdict.FAULT), "answered the verdict 'fault'"),
+        (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict="x" * 9999), "answered the verdict 'xxx"),  # type: ignore[arg-type]
     ],
 )
 def test_nonsense_is_a_fault_of_the_law(answer: Any, says: str) -> None:
     """Whatever a law answers that is no answer: FAULT, at rest and in motion, with what it was."""
-    for v_c in (0.0, 0.3):
-        side = Side(Plug(lambda k, right: answer if k > 100 else right))
+    side = Side(Plug(lambda k, right: answer if k > 100 else right))
+    side.arm()
+    step = side.drive(1.5, 0.3)
+    assert step.verdict is Verdict.FAULT
+    assert says in step.fault
+    side.check()
+    assert not any(step.rates)
+
+
+def test_while_nothing_may_move_the_law_is_not_asked() -> None:
+    """Disarmed, stopped or faulted, a law is not called: it can neither move the robot nor hold up its ramp."""
+    law = Plug(lambda k, right: right)
+    side = Side(law)
+    side.drive(0.2, 0.3)
+    assert law.calls == 0
+    side.arm()
+    side.drive(1.5, 0.3)
+    for act in (side.gate.latch.disarm, side.gate.latch.stop, lambda: side.controller.guard.latch("why")):
+        side.reset()
         side.arm()
-        step = side.drive(1.5, v_c)
-        assert step.verdict is Verdict.FAULT
-        assert says in step.fault
-        side.check()
+        side.drive(0.5, 0.3)
+        act()
+        side.drive(0.2, 0.3)
+        calls = law.calls
+        step = side.drive(0.5, 0.3)
+        assert law.calls == calls
         assert not any(step.rates)
+        assert step.split.mu > 0.9  # who had the hand is still shown
+    side.check()
+
+
+class Text(float):
+    """A number of another type than Python's own, as those of numpy are."""
+
+
+def test_numbers_of_other_types_are_taken_as_floats() -> None:
+    """A law and a driver may speak in numpy's numbers, or in whole ones: what comes out can be sent."""
+    other = [np.float64, np.float32, Fraction, Text]
+
+    def answer(k: int, right: Split) -> Split:
+        kind = other[k % 4]
+        return msgspec.structs.replace(right, v_b=kind(right.v_b), mu=kind(right.mu), w_m=kind(right.w_m))
+
+    def report(true: RobotState) -> RobotState:
+        kind = other[round(true.t * 200) % 4]
+        return msgspec.structs.replace(true, x_b=kind(true.x_b), v_b=kind(true.v_b), theta=tuple(map(kind, true.theta)))
+
+    side = Side(Plug(answer), altered=report)
+    side.arm()
+    for _ in range(300):
+        step = side.drive(0.005, 0.3, 0.1)
+        assert step.verdict is not Verdict.FAULT, step.fault
+        msgspec.msgpack.encode(step)
+        assert set(map(type, step.rates)) == {float}
+    side.check()
+    assert max(rates[0] for rates in side.written) > 0.1
+    assert "TypeError" in Side(altered=lambda true: put(true, "theta_1", 1j)).drive(0.01).fault  # type: ignore[arg-type]
+
+
+class Panic(BaseException):
+    """What some compiled libraries raise: no Exception."""
 
 
 class Mute(Exception):  # noqa: N818  # not an error of ours
@@ -218,9 +280,18 @@ class Mute(Exception):  # noqa: N818  # not an error of ours
 
 
 @pytest.mark.parametrize(
-    "error", [ValueError("plug-in\nof two lines"), Mute(), MemoryError(), RecursionError("deep"), KeyError("x" * 9999)]
+    "error",
+    [
+        ValueError("plug-in\nof two lines"),
+        ValueError("\udcff"),
+        Panic("rust"),
+        Mute(),
+        MemoryError(),
+        RecursionError("deep"),
+        KeyError("x" * 9999),
+    ],
 )
-def test_an_exception_of_a_law_is_a_fault(error: Exception) -> None:
+def test_an_exception_of_a_law_is_a_fault(error: BaseException) -> None:
     """Whatever a law raises, in motion or at rest: one line, a ramp, and nothing leaves the controller."""
 
     def raising(k: int, right: Split) -> Split:
@@ -235,6 +306,7 @@ def test_an_exception_of_a_law_is_a_fault(error: Exception) -> None:
     assert step.verdict is Verdict.FAULT
     assert type(error).__name__ in step.fault
     assert "\n" not in step.fault
+    step.fault.encode()  # it can be sent
     assert len(step.fault) < LONGEST_TOLD + 60
     assert not any(step.rates)
 

@@ -111,6 +111,13 @@ def test_setup_errors() -> None:
         ("[arm]\nelbow = 2", "elbow"),
         ("[workspace]\nl_max = 3.0", "reach"),
         ("[start]\nl = 0.0", "reach"),
+        ("[base]\nv_max = inf", "v_max"),
+        ("[base]\ndw_max = 0.0", "dw_max"),
+        ("[base]\nw_max = -1.0", "w_max"),
+        ("[base]\nlag = nan", "lag"),
+        ("[arm]\ndtheta_max = [3.0, nan]", "dtheta_max"),
+        ("[arm]\nddtheta_max = [0.0, 20.0]", "ddtheta_max"),
+        ("[arm]\ntheta_min = [-4.8, 3.2]", "theta_min"),
         ("= 3", "robot description"),
     ],
 )

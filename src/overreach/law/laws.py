@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from typing import Protocol, final, runtime_checkable
 
-from overreach.errors import WorkspaceError
+from overreach.errors import LONGEST_NAME, WorkspaceError
 from overreach.law import authority
 from overreach.law.blend import Blend, smoothstep, step, tanh
 from overreach.law.workspace import Mount, Workspace
-from overreach.types import Frame, Split, Verdict
+from overreach.types import FLOATS, Frame, Split, Verdict
 
 
 class Law(Protocol):
@@ -47,18 +47,30 @@ class UnusableError(ValueError):
     """A law's answer that cannot be used; says which part is what."""
 
 
-def check_split(split: Split) -> None:
-    """Raise UnusableError unless every number of a law's answer is finite, its scale in [0, 1] and its verdict one."""
-    rates = (split.v_b, split.w_b, split.v_m, split.w_m, *(split.dtheta or ()))
-    if math.isfinite(split.mu + split.sigma + sum(map(abs, rates))) and 0.0 <= split.scale <= 1.0:
-        if isinstance(split.verdict, Verdict):
-            return
-        raise UnusableError(f"the verdict {split.verdict!r}")
-    for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
-        value = getattr(split, name)
-        if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
-            raise UnusableError(f"{name} = {value}")
-    raise UnusableError(f"rates too great to use: {rates}")
+ANSWERS = (Verdict.MOVING, Verdict.NO_SOLUTION)
+"""What a law may say of its answer; the other verdicts are not a law's to give."""
+
+
+def checked(split: Split) -> Split:
+    """Return a law's answer as plain floats.
+
+    Raises UnusableError unless every number is finite, the scale in [0, 1] and the verdict one that a law may give.
+    """
+    own = split.dtheta or ()
+    numbers = (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale, *own)
+    if not (math.isfinite(sum(map(abs, numbers))) and 0.0 <= split.scale <= 1.0):
+        for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
+            value = getattr(split, name)
+            if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
+                raise UnusableError(f"{name} = {value}")
+        raise UnusableError("rates too great to use")
+    if split.verdict not in ANSWERS:
+        raise UnusableError(f"the verdict {str(split.verdict)[:LONGEST_NAME]!r}")
+    if set(map(type, numbers)) == FLOATS:
+        return split
+    mu, sigma, v_b, w_b, v_m, w_m, scale, *own_rates = map(float, numbers)
+    dtheta = None if split.dtheta is None else tuple(own_rates)
+    return Split(mu, sigma, v_b, w_b, v_m, w_m, scale, split.verdict, dtheta)
 
 
 def constants(workspace: Workspace, blend: Blend, mount: Mount) -> tuple[authority.Limits6, authority.Mount3]:

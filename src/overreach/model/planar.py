@@ -12,6 +12,14 @@ from overreach.errors import SetupError, WorkspaceError
 from overreach.law.workspace import Mount, Workspace
 from overreach.types import Channel, Record
 
+LONGEST_LAG_S = 1.0
+
+
+def _check_positive(part: str, **values: float) -> None:
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise SetupError(f"{part} {name} must be a finite number > 0, got {value:g}")
+
 
 class Arm2R(Record, frozen=True):
     """Two links in a plane.
@@ -28,6 +36,11 @@ class Arm2R(Record, frozen=True):
     ddtheta_max: tuple[float, float] = (20.0, 20.0)
 
     def __post_init__(self) -> None:
+        for speed, change in zip(self.dtheta_max, self.ddtheta_max, strict=True):
+            _check_positive("arm", dtheta_max=speed, ddtheta_max=change)
+        for k, (least, most) in enumerate(zip(self.theta_min, self.theta_max, strict=True), start=1):
+            if not -math.inf < least < most < math.inf:
+                raise SetupError(f"arm theta_min must be below theta_max, got {least:g} and {most:g} rad for joint {k}")
         if not all(math.isfinite(link) and link > 0.0 for link in self.links):
             raise SetupError(f"arm links must be finite lengths > 0 m, got {self.links}")
         if self.elbow not in (-1, 1):
@@ -52,6 +65,11 @@ class BaseLimits(Record, frozen=True):
     dw_max: float = 12.0
     lag: float = 0.0
     footprint: tuple[float, float] = (0.5, 0.4)
+
+    def __post_init__(self) -> None:
+        _check_positive("base", v_max=self.v_max, w_max=self.w_max, dv_max=self.dv_max, dw_max=self.dw_max)
+        if not 0.0 <= self.lag <= LONGEST_LAG_S:
+            raise SetupError(f"base lag must be 0 to {LONGEST_LAG_S:g} s, got {self.lag:g}")
 
 
 class Start(Record, frozen=True):

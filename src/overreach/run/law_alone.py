@@ -19,6 +19,9 @@ class LawAlone(HandController):
             self._feedback.asked.move_to(state.t)
             self._believed = state
 
+    def _asks(self, _motion: Motion) -> bool:
+        return True
+
     def _limit(self, *_: object) -> tuple[float, Verdict]:
         return 1.0, Verdict.MOVING
 
@@ -31,5 +34,5 @@ class LawAlone(HandController):
     def _last_word(self, step: Step, motion: Motion, dt: float) -> Step:
         if isfinite(sum(map(abs, step.rates))):
             return step
-        self.guard.latch(f"{self._name} gave rates that are not finite: {step.rates}.")
+        self.guard.latch(f"The law {self.name!r} gave rates that are not finite: {step.rates}.")
         return self._still(step.state)
