@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from overreach.errors import SetupError, UnknownNameError
+from overreach.errors import SetupError, UnknownNameError, told
 from overreach.extras import require
 
 SPARSE = ("osqp", "clarabel")
@@ -61,8 +61,8 @@ def check_settings(solver: str, settings: Mapping[str, Any], also: Iterable[str]
     if not settings:
         return
     library = solver.partition("-")[0]
+    valid = [*_NAMES[library](), *also]
     for key in settings:
-        valid = [*_NAMES[library](), *also]
         if key not in valid:
             raise UnknownNameError(f"setting of the QP solver {solver}", key, valid)
     numpy = require("numpy", "qp", f"the QP solver {solver}")
@@ -73,6 +73,5 @@ def check_settings(solver: str, settings: Mapping[str, Any], also: Iterable[str]
         solve_qp = require("qpsolvers", "qp", f"the QP solver {solver}").solve_qp
         solve_qp(P, one, None, None, None, None, -one, one, solver=library, **settings)
     except Exception as error:
-        told = ", ".join(f"{key} = {value!r}" for key, value in settings.items())
-        why = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise SetupError(f"the QP solver {solver} cannot use {told}: {why}") from None
+        given = ", ".join(f"{key} = {value!r}" for key, value in settings.items())
+        raise SetupError(f"the QP solver {solver} cannot use {given}: {told(error)}") from None

@@ -18,8 +18,6 @@ STALE_S = 0.2
 """Without a fresh command for this long [s], the command ramps to zero."""
 LOST_S = 1.0
 """Without a fresh command for this long [s], the robot is disarmed."""
-
-
 TOLD_S = 0.5
 """How long a refusal is told [s], where nothing weightier is."""
 OPERATORS_KEPT = 64
