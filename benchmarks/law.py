@@ -7,11 +7,12 @@ from functools import partial
 from itertools import cycle
 
 from benchmarks.measure import Promise, in_turns, promise
-from overreach.arm.step import planar_step
 from overreach.bench.replay import Replay
+from overreach.fast.step import planar_step
 from overreach.law.authority import exact, paper
-from overreach.law.blend import Blend, smoothstep, tanh
-from overreach.law.laws import exact as make_exact
+from overreach.law.blend import Blend, Smoothstep, Tanh
+from overreach.law.laws import Exact
+from overreach.model.planar import planar
 
 MOUNT = (0.0, 0.0, 0.0)
 OFFSET = (0.1, 0.05, 0.1)
@@ -23,9 +24,9 @@ def limits(blend: Blend) -> tuple[float, float, float, float, float, float]:
 
 def run() -> Iterator[Promise]:
     """Measure the law in its three regions: the arm alone, blending, the base alone."""
-    soft, paper_blend = smoothstep(), tanh()
-    law = make_exact()
-    drive = Replay(law, 250)
+    soft, paper_blend = Smoothstep(), Tanh()
+    share = Exact().bind(planar())
+    drive = Replay(Exact(), 250)
     ticks = cycle(drive.ticks)
 
     def law_call(l: float, blend: Blend, mount: tuple[float, float, float]) -> Callable[[], object]:
@@ -45,7 +46,7 @@ def run() -> Iterator[Promise]:
             "full planar step, blending (smoothstep)": step_call(1.07, soft, MOUNT),
             "full planar step, blending (tanh)": step_call(1.07, paper_blend, MOUNT),
             "full planar step, blending (tanh), shoulder off centre": step_call(1.07, paper_blend, OFFSET),
-            "exact().split, record and all": partial(law.split, 0.86, 0.3, 0.3, 0.1),
+            "Exact().bind(model), record and all": partial(share, 0.86, 0.3, 0.3, 0.1),
             "HandController.step, limits, guard and all": lambda: drive.step(*next(ticks)),
         }
     )

@@ -5,7 +5,7 @@ from math import degrees
 import overreach as ov
 
 robot = ov.KinematicRobot(psi=0.4)
-hand = ov.HandController(robot.model, ov.exact())
+hand = ov.HandController(robot.model, ov.Exact())
 dt = 1 / 200
 for k in range(2000):
     now = k * dt

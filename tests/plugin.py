@@ -3,57 +3,79 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 LAWS = """
 import math, time
+from typing import Annotated
 import msgspec
 import overreach as ov
+from overreach.parameters import number
 
 MOVING = 300  # calls with a command, before it goes bad
 
-class Bad:
-    frame, closes_residual = ov.Frame.HAND, True
-    workspace, blend, mount = ov.Workspace(), ov.smoothstep(), ov.Mount()
+class _Bad(ov.Law, frozen=True):
+    name = "bad"
 
-    def __init__(self, name, bad):
-        self.name, self._bad, self._law, self._moved = name, bad, ov.exact(), 0
+    def bind(self, model):
+        law, moved = ov.Exact().bind(model), 0
 
-    def split(self, l, psi, u_r, u_t):
-        right = self._law.split(l, psi, u_r, u_t)
-        self._moved += u_r != 0.0
-        return self._bad(right) if self._moved > MOVING else right
+        def share(l, psi, u_r, u_t):
+            nonlocal moved
+            moved += u_r != 0.0
+            right = law(l, psi, u_r, u_t)
+            return self.bad(right) if moved > MOVING else right
 
-def _raise(right):
-    raise ZeroDivisionError("a plug-in's own")
+        return share
 
-def _hang(right):
-    time.sleep(0.03)
-    return right
+class Nan(_Bad, frozen=True):
+    name = "nan"
+    def bad(self, right): return msgspec.structs.replace(right, v_b=math.nan)
 
-def _leave(right):
-    raise SystemExit(7)
+class Raises(_Bad, frozen=True):
+    name = "raises"
+    def bad(self, right): raise ZeroDivisionError("a plug-in's own")
 
-def nan(): return Bad("nan", lambda right: msgspec.structs.replace(right, v_b=math.nan))
-def raises(): return Bad("raises", _raise)
-def hangs(): return Bad("hangs", _hang)
-def nonsense(): return Bad("nonsense", lambda right: "forward!")
-def leaves(): return Bad("leaves", _leave)
-def mistyped(work_space=None, blend=None): return ov.exact(work_space, blend)
-def greedy(robott): return ov.exact()
-def partial(): return object()
-def own(workspace=None, gain=2.0): return ov.exact(workspace)
+class Hangs(_Bad, frozen=True):
+    name = "hangs"
+    def bad(self, right):
+        time.sleep(0.03)
+        return right
+
+class Nonsense(_Bad, frozen=True):
+    name = "nonsense"
+    def bad(self, right): return "forward!"
+
+class Leaves(_Bad, frozen=True):
+    name = "leaves"
+    def bad(self, right): raise SystemExit(7)
+
+class Misnamed(_Bad, frozen=True):
+    name = "another"
+
+class Partial:
+    name = "partial"
+
+class Own(ov.Law, frozen=True):
+    name = "own"
+    gain: Annotated[float, number("gain", "1/s", 0.0, 10.0, above=0.0)] = 2.0
+    shift: Annotated[float, number("shift", "m", -0.1, 0.1)] = 0.0
+
+    def bind(self, model):
+        share = ov.Exact().bind(model)
+        return lambda l, psi, u_r, u_t: share(l + self.shift, psi, u_r, u_t)
 """
-"""Laws that are right until they have moved the hand for a while, and makers of laws that cannot be had."""
+"""Laws that are right until they have moved the hand for a while, laws that cannot be had, and one with parameters."""
 
 
 def install(folder: Path, module: str = "bad_laws", text: str = LAWS, group: str = "overreach.laws") -> dict[str, str]:
-    """Write a distribution of one module whose functions are entry points; return an environment that has it."""
+    """Write a distribution of one module, its public functions and classes entry points; return its environment."""
     (folder / f"{module}.py").write_text(text)
     info = folder / f"{module}-1.0.dist-info"
-    info.mkdir()
+    info.mkdir(exist_ok=True)
     (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {module}\nVersion: 1.0\n")
-    makers = [line.split("(")[0].removeprefix("def ") for line in text.splitlines() if line.startswith("def ")]
-    lines = [f"{maker} = {module}:{maker}" for maker in makers if not maker.startswith("_")]
+    makers = re.findall(r"^(?:def|class) ([A-Za-z]\w*)", text, re.MULTILINE)
+    lines = [f"{maker.lower()} = {module}:{maker}" for maker in makers]
     (info / "entry_points.txt").write_text(f"[{group}]\n" + "\n".join(lines) + "\n")
     return os.environ | {"PYTHONPATH": str(folder)}

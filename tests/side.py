@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
-from overreach.control import HandController
+from overreach.control.controller import HandController
 from overreach.gate.gate import Gate
-from overreach.law.laws import Law, exact
-from overreach.model.planar import PlanarRobot
+from overreach.law.body import WholeBody
+from overreach.law.laws import Exact
+from overreach.model.model import Model
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import RobotState, Step, Stick
@@ -28,18 +29,18 @@ class Side:
 
     def __init__(
         self,
-        law: Law | None = None,
+        law: WholeBody | None = None,
         start: float = 50.0,
         dt: float = 0.005,
         altered: Callable[[RobotState], RobotState | None] = lambda state: state,
         imperfection: Imperfection | None = None,
-        model: PlanarRobot | None = None,
+        model: Model | None = None,
     ) -> None:
         self.dt = dt
         self.now = start
         self.gate = Gate()
         self.robot = KinematicRobot(model, imperfection, now=start)
-        law = law or exact()
+        law = law or Exact()
         self.controller = HandController(self.robot.model, law, ramp_s=self.gate.limits.ramp_s)
         self.altered = altered
         self.seq = self.grip = 0

@@ -6,8 +6,9 @@ import math
 
 from hypothesis import strategies as st
 
-from overreach.law.blend import Blend, smoothstep, step, tanh
-from overreach.law.workspace import Mount, Workspace
+from overreach.arm.mount import Mount
+from overreach.law.blend import Blend, Smoothstep, Step, Tanh
+from overreach.model.workspace import Workspace
 
 WORKSPACE = Workspace(0.45, 0.85, -0.6, 0.6)
 MOUNT_FREE = Mount()
@@ -18,9 +19,9 @@ speeds = st.floats(-0.4, 0.4)
 angles = st.floats(-math.pi, math.pi)
 mounts = st.builds(Mount, st.floats(-0.2, 0.3), st.floats(-0.2, 0.2), st.floats(-0.5, 0.5))
 blends = st.one_of(
-    st.builds(tanh, st.floats(5.0, 200.0), st.floats(5.0, 200.0)),
-    st.builds(smoothstep, st.floats(0.01, 0.2), st.floats(0.01, 0.3)),
-    st.just(step()),
+    st.builds(Tanh, st.floats(5.0, 200.0), st.floats(5.0, 200.0)),
+    st.builds(Smoothstep, st.floats(0.01, 0.2), st.floats(0.01, 0.3)),
+    st.just(Step()),
 )
 
 

@@ -10,14 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from overreach.arm.planar import inverse
-from overreach.baselines.weighted import weighted
-from overreach.control import HandController
+from overreach.baselines.weighted import Weighted
+from overreach.control.controller import HandController
 from overreach.law.authority import ee_velocity
-from overreach.law.blend import step
-from overreach.law.laws import exact, paper
-from overreach.law.workspace import Workspace
-from overreach.model.planar import Arm2R, PlanarRobot
-from overreach.plugs import LAWS, load_law, names
+from overreach.law.blend import Step
+from overreach.law.laws import Exact, Paper
+from overreach.model.model import channels
+from overreach.model.planar import planar
+from overreach.model.workspace import Workspace
+from overreach.plugs import law_names, load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.law_alone import LawAlone
 from overreach.types import Frame, Verdict
@@ -26,14 +27,20 @@ from tests.strategies import speeds
 DT = 0.005
 
 
+class Closing(Weighted, frozen=True):
+    """The pseudo-inverse, and the arm makes up for the base."""
+
+    closes_residual = True
+
+
 @settings(max_examples=60)
-@given(st.sampled_from(names(LAWS)), st.integers(0, 10**6))
+@given(st.sampled_from(law_names()), st.integers(0, 10**6))
 def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
     """Under any commands and any law, base and joints keep their limits of speed and acceleration, always."""
     law = load_law(name)
     robot = KinematicRobot()
     controller = HandController(robot.model, law)
-    arm, base = robot.model.arm, robot.model.base
+    each = channels(robot.model)
     chance = random.Random(seed)
     rates: list[tuple[float, ...]] = [(0.0, 0.0, 0.0, 0.0)]
     v_c = w_c = 0.0
@@ -44,21 +51,19 @@ def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
         done = controller.step(state, v_c, w_c, DT)
         robot.write(done.twist, done.dtheta, k * DT)
         rates.append((done.split.v_b, done.split.w_b, *done.dtheta))
-        for angle, least, most in zip(state.theta, arm.theta_min, arm.theta_max, strict=True):
-            assert least - 1e-3 <= angle <= most + 1e-3
-    fastest = (base.v_max, base.w_max, *arm.dtheta_max)
-    change = (base.dv_max, base.dw_max, *arm.ddtheta_max)
+        for angle, joint in zip(state.theta, each[2:], strict=True):
+            assert joint.lower - 1e-3 <= angle <= joint.upper + 1e-3
     for before, after in pairwise(rates):
-        for was, is_, top, most in zip(before, after, fastest, change, strict=True):
-            assert abs(is_) <= top * (1 + 1e-6)
-            assert abs(is_ - was) <= most * DT * (1 + 1e-6)
+        for was, is_, channel in zip(before, after, each, strict=True):
+            assert abs(is_) <= channel.rate_max * (1 + 1e-6)
+            assert abs(is_ - was) <= channel.change_max * DT * (1 + 1e-6)
 
 
 def test_limits_keep_the_hands_direction() -> None:
     """Where a limit slows the hand, it still goes where it was sent: the command is scaled, never one part of it."""
-    slow = PlanarRobot(arm=Arm2R(dtheta_max=(0.3, 0.3)))
+    slow = planar(arm=msgspec.structs.replace(planar().arm, dtheta_max=(0.3, 0.3)))
     robot = KinematicRobot(slow, psi=0.2)
-    controller = HandController(slow, exact())
+    controller = HandController(slow, Exact())
     start = robot.read(0.0)
     heading = controller.locate(start).theta_e
     places = []
@@ -81,9 +86,12 @@ def test_limits_keep_the_hands_direction() -> None:
 
 def test_joint_limit_brakes_and_backs_out() -> None:
     """At a joint's limit the hand stops without passing it, says why, and can go back."""
-    tight = PlanarRobot(arm=Arm2R(theta_min=(-4.8, 1.2), theta_max=(4.8, 2.5)), workspace=Workspace(0.5, 0.95))
+    tight = planar(
+        arm=msgspec.structs.replace(planar().arm, theta_min=(-4.8, 1.2), theta_max=(4.8, 2.5)),
+        workspace=Workspace(0.5, 0.95, -0.6, 0.6),
+    )
     robot = KinematicRobot(tight, l=0.7)
-    controller = HandController(tight, exact(tight.workspace, step()))
+    controller = HandController(tight, Exact(Step()))
     verdicts = set()
     for k in range(600):
         done = controller.step(robot.read(k * DT), 0.3, 0.0, DT)
@@ -104,7 +112,7 @@ def test_at_rest_nothing_moves(v_c: float, w_c: float) -> None:
     """A zero command gives zero rates, in every frame and pose, also just after another command."""
     robot = KinematicRobot()
     for frame in Frame:
-        controller = LawAlone(robot.model, exact(), frame)
+        controller = LawAlone(robot.model, Exact(), frame)
         controller.step(robot.read(0.0), v_c, w_c, DT)
         controller.restart()
         done = controller.step(robot.read(0.0), 0.0, 0.0, DT)
@@ -114,22 +122,22 @@ def test_at_rest_nothing_moves(v_c: float, w_c: float) -> None:
 def test_changing_the_frame_starts_the_heading_anew() -> None:
     """The hand's heading turns at w_c, stays over a change of law, and begins at its bearing with a change of frame."""
     robot = KinematicRobot(psi=0.3)
-    controller = LawAlone(robot.model, exact())
+    controller = LawAlone(robot.model, Exact())
     assert controller.locate(robot.true).theta_e == pytest.approx(0.3)
     for _ in range(100):
         controller.step(robot.true, 0.0, 0.4, DT)
     assert controller.locate(robot.true).theta_e == pytest.approx(0.5)
-    controller.configure(paper(), Frame.HAND)
+    controller.configure(Paper(), Frame.HAND)
     assert controller.locate(robot.true).theta_e == pytest.approx(0.5)
-    controller.configure(paper(), Frame.POLAR)
-    controller.configure(exact(), Frame.HAND)
+    controller.configure(Paper(), Frame.POLAR)
+    controller.configure(Exact(), Frame.HAND)
     assert controller.locate(robot.true).theta_e == pytest.approx(0.3)
 
 
 def test_inside_the_workspace_only_the_arm_moves() -> None:
     """A reach of 10 cm inside the workspace moves the base by nothing at all."""
     robot = KinematicRobot()
-    controller = HandController(robot.model, exact())
+    controller = HandController(robot.model, Exact())
     for k in range(100):
         done = controller.step(robot.read(k * DT), 0.2, 0.0, DT)
         robot.write(done.twist, done.dtheta, k * DT)
@@ -140,8 +148,7 @@ def test_inside_the_workspace_only_the_arm_moves() -> None:
 
 def test_a_joint_law_that_closes_the_residual_does() -> None:
     """To the joint rates of a law that says it closes the residual, what the base does otherwise is added."""
-    law = weighted()
-    law.closes_residual = True
+    law = Closing()
     robot = KinematicRobot(psi=0.3)
     hand = HandController(robot.model, law, Frame.WORLD)
     for k in range(200):

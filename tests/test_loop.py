@@ -8,13 +8,15 @@ from typing import Any, cast
 import pytest
 
 from overreach.clock import SteppedClock
+from overreach.law.body import NO_SOLUTION
 from overreach.link.endpoint import free_port
 from overreach.link.messages import Refused, Restart, Settings, State
 from overreach.link.robot_end import RobotEnd
 from overreach.loop import Loop
-from overreach.model.planar import load_planar
+from overreach.model.planar import planar
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import BaseTwist, Frame, RobotState, Split, Stick, Verdict
+from tests.laws import Given, exact
 
 PERIOD = 0.005
 
@@ -24,7 +26,7 @@ def test_an_overrun_is_counted_and_never_made_up_for(late: float) -> None:
     """After a stall the loop leaves out what it has missed: no two ticks in one period, all on the beat."""
     start = 100.0
     clock = SteppedClock(start)
-    model = load_planar()
+    model = planar()
     link = RobotEnd(f"tcp/127.0.0.1:{free_port()}")
     try:
         loop = Loop(model, KinematicRobot(model, now=start), link, clock, 1.0 / PERIOD)
@@ -193,21 +195,16 @@ def test_a_robot_that_cannot_be_written_to_is_a_fault(bench: Bench) -> None:
 @pytest.mark.parametrize(("slow", "fault"), [(2, False), (3, True)])
 def test_a_law_that_is_slow_three_times_is_a_fault(bench: Bench, slow: int, fault: bool) -> None:
     """A decision that takes longer than a period is an overrun; three of late are a fault of the law."""
-    law = bench.loop.controller.law
-    split, calls = law.split, 0
+    law, calls = exact(), 0
 
-    class Slow:
-        name, frame, closes_residual = "slow", law.frame, law.closes_residual
-        workspace, blend, mount = law.workspace, law.blend, law.mount
+    def share(*case: float) -> Split:
+        nonlocal calls
+        calls += 1
+        if calls % 50 < slow:
+            bench.clock.t += 1.01 * PERIOD
+        return law.split(*case)
 
-        def split(self, *case: float) -> Any:
-            nonlocal calls
-            calls += 1
-            if calls % 50 < slow:
-                bench.clock.t += 1.01 * PERIOD
-            return split(*case)
-
-    bench.loop.controller.configure(cast(Any, Slow()))
+    bench.loop.controller.configure(Given(share, "slow"))
     bench.drive(300)
     assert bench.loop.overruns > 0
     assert (bench.loop.gate.latch.fault == "The law 'slow' takes 5 ms; a period has 5 ms.") is fault
@@ -217,16 +214,7 @@ def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.Mon
     """Of what gate and law say the weightier is told: NO_SOLUTION over SPEED, STOPPED over that, with its look."""
     states: list[State] = []
     monkeypatch.setattr(bench.loop._link, "publish", states.append)
-    law = bench.loop.controller.law
-
-    class Unsolved:
-        name, frame, closes_residual = "unsolved", law.frame, law.closes_residual
-        workspace, blend, mount = law.workspace, law.blend, law.mount
-
-        def split(self, *case: float) -> Split:
-            return Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, Verdict.NO_SOLUTION)
-
-    bench.loop.controller.configure(cast(Any, Unsolved()))
+    bench.loop.controller.configure(Given(lambda *_: NO_SOLUTION, "unsolved"))
 
     def too_fast(k: int) -> None:
         bench.seq += 1
@@ -248,22 +236,17 @@ def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.Mon
 @pytest.mark.parametrize(("every", "takes"), [(1, 0.1), (2, 0.03), (3, 0.04), (100, 0.06)])
 def test_a_slow_law_does_not_stretch_a_stop(bench: Bench, every: int, takes: float) -> None:
     """However slow a law is, and how often: after a stop zero is written within v/a and what three decisions took."""
-    law = bench.loop.controller.law
-    calls = 0
+    law, calls = exact(), 0
     stopped_at = still_at = 0.0
 
-    class Slow:
-        name, frame, closes_residual = "slow", law.frame, law.closes_residual
-        workspace, blend, mount = law.workspace, law.blend, law.mount
+    def share(*case: float) -> Split:
+        nonlocal calls
+        calls += 1
+        if stopped_at and calls % every == 0:
+            bench.clock.t += takes
+        return law.split(*case)
 
-        def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
-            nonlocal calls
-            calls += 1
-            if stopped_at and calls % every == 0:
-                bench.clock.t += takes
-            return law.split(l, psi, u_r, u_t)
-
-    bench.loop.controller.configure(cast(Any, Slow()))
+    bench.loop.controller.configure(Given(share, "slow"))
 
     def stop(k: int) -> None:
         nonlocal stopped_at, still_at

@@ -10,14 +10,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from overreach.control import HandController
+    from overreach.arm.mount import Mount
+    from overreach.control.controller import HandController
     from overreach.errors import OverreachError, SetupError
     from overreach.gate.gate import Gate
     from overreach.gate.limits import Limits
-    from overreach.law.blend import smoothstep, step, tanh
-    from overreach.law.laws import Law, exact, paper, switch
-    from overreach.law.workspace import Mount, Workspace
-    from overreach.model.planar import PlanarRobot
+    from overreach.law.blend import Blend, Smoothstep, Step, Tanh
+    from overreach.law.body import WholeBody
+    from overreach.law.laws import Exact, Law, Paper, Switch
+    from overreach.model.planar import PlanarRobot, planar
+    from overreach.model.workspace import Workspace
     from overreach.robots.base import Robot
     from overreach.robots.kinematic import KinematicRobot
     from overreach.run.scenario import load_scenario
@@ -27,23 +29,26 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
-    "HandController": "control",
+    "HandController": "control.controller",
     "OverreachError": "errors",
     "SetupError": "errors",
     "simulate": "run.simulate",
     "load_scenario": "run.scenario",
     "Gate": "gate.gate",
     "Limits": "gate.limits",
-    "smoothstep": "law.blend",
-    "step": "law.blend",
-    "tanh": "law.blend",
+    "Blend": "law.blend",
+    "Smoothstep": "law.blend",
+    "Step": "law.blend",
+    "Tanh": "law.blend",
+    "WholeBody": "law.body",
     "Law": "law.laws",
-    "exact": "law.laws",
-    "paper": "law.laws",
-    "switch": "law.laws",
-    "Mount": "law.workspace",
-    "Workspace": "law.workspace",
+    "Exact": "law.laws",
+    "Paper": "law.laws",
+    "Switch": "law.laws",
+    "Mount": "arm.mount",
+    "Workspace": "model.workspace",
     "PlanarRobot": "model.planar",
+    "planar": "model.planar",
     "Robot": "robots.base",
     "KinematicRobot": "robots.kinematic",
     "BaseTwist": "types",
@@ -55,6 +60,8 @@ _HOMES = {
 
 __all__ = [
     "BaseTwist",
+    "Blend",
+    "Exact",
     "Frame",
     "Gate",
     "HandController",
@@ -63,22 +70,23 @@ __all__ = [
     "Limits",
     "Mount",
     "OverreachError",
+    "Paper",
     "PlanarRobot",
     "Robot",
     "RobotState",
     "SetupError",
+    "Smoothstep",
     "Split",
+    "Step",
+    "Switch",
+    "Tanh",
     "Verdict",
+    "WholeBody",
     "Workspace",
     "__version__",
-    "exact",
     "load_scenario",
-    "paper",
+    "planar",
     "simulate",
-    "smoothstep",
-    "step",
-    "switch",
-    "tanh",
 ]
 
 

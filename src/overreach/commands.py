@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 from tyro.extras import SubcommandApp
+
+if TYPE_CHECKING:
+    from overreach.parameters import Parameters
 
 app = SubcommandApp()
 
@@ -77,6 +80,7 @@ def cockpit(
 def simulate(
     scenario: Annotated[str, tyro.conf.Positional],
     law: str = "exact",
+    set: tuple[str, ...] = (),
     out: Path | None = None,
     json: bool = False,
 ) -> None:
@@ -86,11 +90,13 @@ def simulate(
         scenario: A built-in scenario (outward, inward, left, right, mixed, aside, aside_back, reach, held, dither,
             dither_pushed) or a TOML file.
         law: Name of the law (see `overreach laws`).
+        set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         out: CSV file to write, one row a step.
         json: Print the summary as JSON.
     """
     import msgspec
 
+    from overreach.parameters import assignments
     from overreach.run.files import check_writable, write_csv
     from overreach.run.metrics import cost_per_step
     from overreach.run.scenario import load_scenario
@@ -101,15 +107,15 @@ def simulate(
     if out is not None:
         check_writable(out, "--out")
     loaded = load_scenario(scenario)
-    made = law_of(loaded, law)
+    made = law_of(loaded, law, assignments(set))
     run = run_scenario(loaded, made)
     if out is not None:
         write_csv(out, run.rows)
     if json:
         print(msgspec.json.encode(run.summary).decode())
         return
-    cost = cost_per_step(made, loaded.frame or made.frame, run.rows, made.mount.yaw)
-    print(f"{table(run.summary)}\n  {'law.split, median, here and now':<32}{cost:>12.4g}  us")
+    cost = cost_per_step(made, loaded.frame or made.frame, run.rows, loaded.model)
+    print(f"{table(run.summary)}\n  {'one plan, median, here and now':<32}{cost:>12.4g}  us")
 
 
 @app.command
@@ -147,21 +153,20 @@ def bench(json: Path | None = None) -> None:
 @app.command
 def laws() -> None:
     """List the laws, the blends and the command frames."""
-    from overreach.law.blend import BLENDS
     from overreach.law.frame import FRAMES
-    from overreach.plugs import LAWS, summaries
+    from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, names, usable
 
-    _list("laws (--law)", summaries(LAWS))
-    _list("blends", BLENDS)
+    _list_plugs("laws (--law), with their parameters (--set NAME=VALUE)", usable(law_names(), law_plug))
+    _list_plugs("blends", usable(names(BLENDS), blend_plug))
     _list("command frames", {name: (frame.__doc__ or "").splitlines()[0] for name, frame in FRAMES.items()})
 
 
 @app.command
 def robots() -> None:
     """List the robots."""
-    from overreach.plugs import ROBOTS, summaries
+    from overreach.plugs import MODELS, summaries
 
-    _list("robots", summaries(ROBOTS))
+    _list("robots", summaries(MODELS))
 
 
 @app.command
@@ -176,3 +181,17 @@ def _list(title: str, entries: dict[str, str]) -> None:
     print(title)
     for name, line in entries.items():
         print(f"  {name:<12}{line}")
+
+
+def _list_plugs(title: str, plugs: dict[str, type[Parameters] | str]) -> None:
+    from overreach.parameters import schema, summary
+
+    print(title)
+    for name, plug in plugs.items():
+        if isinstance(plug, str):
+            print(f"  {name:<12}cannot be used: {plug}")
+            continue
+        print(f"  {name:<12}{summary(plug)}")
+        for one in schema(plug):
+            choices = f", one of {', '.join(one.choices)}" if one.choices else ""
+            print(f"{'':<14}{f'{one.name} = {one.shown}':<28}{one.title}{choices}")

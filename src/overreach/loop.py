@@ -9,14 +9,13 @@ from math import inf
 from typing import final
 
 from overreach import __version__
-from overreach.arm.planar import hand_in_world
+from overreach.arm.polar import hand_in_world
 from overreach.clock import Clock
-from overreach.control import HandController
+from overreach.control.controller import HandController
 from overreach.errors import OverreachError, SetupError, told
 from overreach.gate.gate import STALE_S, Gate, Gated
-from overreach.law.blend import blend_from
-from overreach.law.laws import Law
-from overreach.law.workspace import Workspace
+from overreach.law.blend import Step as HardSwitch
+from overreach.law.body import WholeBody
 from overreach.link.messages import (
     PROTOCOL,
     Accepted,
@@ -35,8 +34,10 @@ from overreach.link.messages import (
     Welcome,
 )
 from overreach.link.robot_end import RobotEnd
-from overreach.model.planar import PlanarRobot
-from overreach.plugs import LAWS, load_law, loaded, names
+from overreach.model.model import Model, check_workspace, placed
+from overreach.model.workspace import Workspace
+from overreach.parameters import schema
+from overreach.plugs import BODIES, LAWS, blend_plug, load_law, loaded, names
 from overreach.robots.kinematic import KinematicRobot
 from overreach.timing import Lateness
 from overreach.types import Motion, RobotState, Step, Verdict, weightier
@@ -54,9 +55,7 @@ HUNG_S = 0.05
 class Loop:
     """Reads robot and link, decides, writes. `tick` lets no exception of a law or robot out; `run` keeps time."""
 
-    def __init__(
-        self, model: PlanarRobot, robot: KinematicRobot, link: RobotEnd, clock: Clock, rate: float = 200.0
-    ) -> None:
+    def __init__(self, model: Model, robot: KinematicRobot, link: RobotEnd, clock: Clock, rate: float = 200.0) -> None:
         self.model = model
         self.rate = rate
         self.gate = Gate()
@@ -202,27 +201,33 @@ class Loop:
                 self._configure(settings)
         return Accepted()
 
-    def _law(self, settings: Settings) -> Law:
+    def _law(self, settings: Settings) -> WholeBody:
+        plug = blend_plug(settings.blend)
+        own = {one.name: getattr(settings, one.name) for one in schema(plug)}
+        return load_law(settings.law, {}, plug.made(own, "blend"))
+
+    def _model(self, settings: Settings) -> Model:
+        """Return the robot with the workspace of `settings`."""
         workspace = Workspace(settings.l_min, settings.l_max, settings.psi_min, settings.psi_max)
-        self.model.check_workspace(workspace)
-        blend = blend_from(settings.blend, settings.alpha, settings.beta, settings.q_l, settings.q_psi)
-        return load_law(settings.law, workspace, blend, self.model.mount, self.model)
+        model = placed(self.model, self.model.mount, workspace)
+        check_workspace(model, workspace)
+        return model
 
     def _configure(self, settings: Settings) -> None:
         """Use `settings`; raises SetupError, with nothing changed, where they cannot be used."""
         if settings.frame is not self.controller.frame and not self.resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
-        new = settings.law in names(LAWS) and not loaded(settings.law)
+        new = settings.law in names(LAWS, BODIES) and not loaded(settings.law)
         if new and not self.resting:
             raise SetupError(f"Let go first: {settings.law!r} has to be loaded, which holds the loop up for a moment.")
-        law, frame = self._law(settings), settings.frame
+        law, model, frame = self._law(settings), self._model(settings), settings.frame
         if new:  # what came with it is here to stay: the collector is not to look through it in the middle of a drive
             gc.collect()
             gc.freeze()
         before = self.gate.speed_scale
         self.gate.set_speed_scale(settings.speed_scale)
         try:
-            self.controller.configure(law, frame)
+            self.controller.configure(law, frame, model)
         except Exception:
             self.gate.set_speed_scale(before)
             raise
@@ -241,7 +246,7 @@ class Loop:
             version=__version__,
             robot=self.model.name,
             rate=self.rate,
-            links=self.model.arm.links,
+            links=self.model.arm.links,  # type: ignore[attr-defined]
             shoulder=(self.model.mount.s_x, self.model.mount.s_y),
             mount_yaw=self.model.mount.yaw,
             footprint=base.footprint,
@@ -272,7 +277,7 @@ class Loop:
         x_e, y_e = hand_in_world(
             state.x_b, state.y_b, state.theta_b, polar.l, polar.psi + mount.yaw, mount.s_x, mount.s_y
         )
-        blend = self.controller.law.blend
+        blend = getattr(self.controller.law, "blend", HardSwitch())
         return State(
             now, self._tick, latch.operator, self.gate.seq, verdict.value, verdict.word, sentence,
             gated.scale * step.scale, latch.armed, latch.latched, gated.v_c, gated.w_c,

@@ -1,30 +1,40 @@
-"""Laws and robots by name: entry points, loaded when asked for and not before."""
+"""Laws, whole bodies, blends, models and robots by name: entry points, loaded when asked for and not before."""
 
 from __future__ import annotations
 
-import difflib
-import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, get_type_hints
+from typing import Any
 
-from overreach.errors import SetupError, UnknownNameError
+from overreach.errors import SetupError, UnknownNameError, told
 from overreach.law.blend import Blend
+from overreach.law.body import WholeBody
 from overreach.law.laws import Law
-from overreach.law.workspace import Mount, Workspace
-from overreach.model.planar import PlanarRobot
-from overreach.types import Frame
+from overreach.model.model import Model
+from overreach.parameters import Parameters, summary
+from overreach.types import Record
 
 LAWS = "overreach.laws"
-"""Entry points to makers of a Law. A maker names those of these it needs, each with a default:
-workspace: Workspace, blend: Blend, mount: Mount, robot: PlanarRobot."""
-ALIKE = 0.85
-"""How much a parameter's name must be like one of GIVEN to be taken for a mistyped one."""
-GIVEN = ("workspace", "blend", "mount", "robot")
-ROBOTS = "overreach.robots"
-"""Entry points to makers: () -> PlanarRobot."""
+"""Entry points to subclasses of `overreach.law.laws.Law`."""
+BODIES = "overreach.bodies"
+"""Entry points to subclasses of `overreach.law.body.WholeBody`: what plans all rates itself. Chosen as laws are."""
+BLENDS = "overreach.blends"
+"""Entry points to subclasses of `overreach.law.blend.Blend`."""
+MODELS = "overreach.models"
+"""Entry points to makers of a description: () -> Model."""
+
+KINDS: dict[str, tuple[str, type[Parameters]]] = {
+    LAWS: ("law", Law), BODIES: ("law", WholeBody), BLENDS: ("blend", Blend)
+}  # fmt: skip
+
+
+class Choice(Record, frozen=True):
+    """A plug by its name, with those of its parameters that are not the usual ones."""
+
+    name: str
+    parameters: dict[str, Any] = {}
 
 
 @cache
@@ -33,76 +43,89 @@ def _points(group: str) -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=group)}
 
 
-def names(group: str) -> list[str]:
-    """Return the names in an entry-point group, sorted."""
-    return sorted(_points(group))
+def names(*groups: str) -> list[str]:
+    """Return the names in entry-point groups, sorted."""
+    return sorted({name for group in groups for name in _points(group)})
 
 
-def _load(group: str, kind: str, name: str) -> Callable[..., Any]:
-    found = _points(group)
-    if name not in found:
-        raise UnknownNameError(kind, name, found)
-    maker: Callable[..., Any] = found[name].load()
-    return maker
+def law_names() -> list[str]:
+    """Return the names of all that may be asked to share the hand's motion."""
+    return names(LAWS, BODIES)
 
 
-def takes(name: str) -> frozenset[str]:
-    """Return the parameters of the maker of the law called `name`: some of workspace, blend, mount, robot; its own.
+def _plug(kind: str, name: str, *groups: str) -> type[Any]:
+    """Return the class of the plug called `name`; raises SetupError where there is none or it is none."""
+    for group in groups:
+        if name in _points(group):
+            plug = _points(group)[name].load()
+            wanted = KINDS[group][1]
+            if not (isinstance(plug, type) and issubclass(plug, wanted)):
+                raise SetupError(f"the {kind} {name!r} is no subclass of {wanted.__module__}.{wanted.__name__}")
+            if getattr(plug, "name", "") != name:
+                raise SetupError(f"the {kind} {name!r} calls itself {getattr(plug, 'name', '')!r}: use one name")
+            return plug
+    raise UnknownNameError(kind, name, names(*groups))
 
-    Raises SetupError for one that is nearly one of those, or has no default: it would silently never be given.
-    """
-    parameters = inspect.signature(_load(LAWS, "law", name)).parameters
-    for parameter in parameters.values():
-        if parameter.name in GIVEN or parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-            continue
-        near = difflib.get_close_matches(parameter.name, GIVEN, n=1, cutoff=ALIKE)
-        if near or parameter.default is parameter.empty:
-            hint = f" Did you mean {near[0]!r}?" if near else ""
-            raise SetupError(
-                f"the maker of the law {name!r} has a parameter {parameter.name!r}, which nothing gives it.{hint} "
-                f"Given are: {', '.join(GIVEN)}; one of its own needs a default."
-            )
-    return frozenset(parameters)
+
+def law_plug(name: str) -> type[WholeBody]:
+    """Return the class of the law or whole body called `name`."""
+    return _plug("law", name, LAWS, BODIES)
+
+
+def blend_plug(name: str) -> type[Blend]:
+    """Return the class of the blend called `name`."""
+    return _plug("blend", name, BLENDS)
+
+
+def load_blend(name: str, parameters: Mapping[str, Any] | None = None) -> Blend:
+    """Return the blend called `name`; raises SetupError for a name or a parameter that there is not."""
+    return blend_plug(name).made(parameters or {}, "blend")
+
+
+def usable(names_: Sequence[str], plug: Callable[[str], type[Parameters]]) -> dict[str, type[Parameters] | str]:
+    """Return name -> the plug's class or, where it is somebody else's and cannot be had, why not."""
+    found: dict[str, type[Parameters] | str] = {}
+    for name in names_:
+        try:
+            found[name] = plug(name)
+        except Exception as error:  # a plug-in may raise anything when it is imported
+            found[name] = str(error) if isinstance(error, SetupError) else told(error)
+    return found
 
 
 def loaded(name: str) -> bool:
     """Say whether the law called `name` is in memory: to load another may take a second (it may import numpy)."""
-    point = _points(LAWS).get(name)
-    return point is not None and point.module in sys.modules
+    points = _points(LAWS) | _points(BODIES)
+    return name in points and points[name].module in sys.modules
 
 
-def load_law(
-    name: str,
-    workspace: Workspace | None = None,
-    blend: Blend | None = None,
-    mount: Mount | None = None,
-    robot: PlanarRobot | None = None,
-) -> Law:
-    """Return the law called `name`, made from those of the other arguments that its maker names.
+def blends_in(plug: type[Parameters]) -> bool:
+    """Say whether a law has a blend to be chosen."""
+    return "blend" in plug.__struct_fields__
 
-    Raises UnknownNameError with the valid names, or MissingExtraError where it needs a library that is not installed.
+
+def load_law(name: str, parameters: Mapping[str, Any] | None = None, blend: Blend | None = None) -> WholeBody:
+    """Return the law, or whole body, called `name`, with `blend` where it has one to be chosen.
+
+    Raises UnknownNameError with the valid names, SetupError for a parameter that cannot be used, or MissingExtraError
+    where it needs a library that is not installed.
     """
-    given = {"workspace": workspace, "blend": blend, "mount": mount, "robot": robot}
-    law: Law = _load(LAWS, "law", name)(**{key: given[key] for key in takes(name) if given.get(key) is not None})
-    missing = [part for part in (*get_type_hints(Law), "split") if not hasattr(law, part)]
-    if missing:
-        raise SetupError(f"the law {name!r} lacks {', '.join(missing)}: see overreach.testing.law.check_law")
-    for part, kind in (("frame", Frame), ("workspace", Workspace), ("blend", Blend), ("mount", Mount)):
-        if not isinstance(getattr(law, part), kind):
-            raise SetupError(f"the law {name!r} has a {part} that is no {kind.__name__}: {getattr(law, part)!r}")
-    return law
+    plug = law_plug(name)
+    given = dict(parameters or {})
+    if blend is not None and blends_in(plug):
+        given["blend"] = blend
+    return plug.made(given, "law")
 
 
-def load_robot(name: str) -> PlanarRobot:
+def load_model(name: str) -> Model:
     """Return the description of the robot called `name`; raises UnknownNameError with the valid names."""
-    robot: PlanarRobot = _load(ROBOTS, "robot", name)()
-    return robot
+    found = _points(MODELS)
+    if name not in found:
+        raise UnknownNameError("robot", name, found)
+    maker: Callable[[], Model] = found[name].load()
+    return maker()
 
 
-def summaries(group: str) -> dict[str, str]:
-    """Return name -> the first line of what its maker says of itself."""
-    lines = {}
-    for name in names(group):
-        doc = _load(group, "plug", name).__doc__ or ""
-        lines[name] = doc.strip().splitlines()[0] if doc.strip() else ""
-    return lines
+def summaries(*groups: str) -> dict[str, str]:
+    """Return name -> the first line of what a plug says of itself."""
+    return {name: summary(point.load()) for group in groups for name, point in sorted(_points(group).items())}

@@ -13,7 +13,7 @@ from overreach.errors import SetupError
 from overreach.link.endpoint import check_endpoint
 from overreach.link.robot_end import RobotEnd
 from overreach.loop import Loop
-from overreach.plugs import load_robot
+from overreach.plugs import load_model
 from overreach.robots.kinematic import KinematicRobot
 
 RATES = (50.0, 1000.0)
@@ -49,7 +49,7 @@ def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -
     """
     check_rate(rate)
     endpoint = check_endpoint(listen)
-    model = load_robot(robot)
+    model = load_model(robot)
     clock = MonotonicClock(min(SPIN_S, SPIN_PART / rate))
     ended = False
 

@@ -153,14 +153,27 @@ class BaseTwist(Record, frozen=True):
     w_b: float = 0.0
 
 
+class HandTwist(Record, frozen=True):
+    """The commanded velocity of the hand in polar axes: outward, counter-clockwise and up, at the base's heading.
+
+    u_r, u_t, u_z [m/s]; w_r, w_t, w_z [rad/s].
+    """
+
+    u_r: float = 0.0
+    u_t: float = 0.0
+    u_z: float = 0.0
+    w_r: float = 0.0
+    w_t: float = 0.0
+    w_z: float = 0.0
+
+
 class Split(Record, frozen=True):
     """A law's answer: how one EE velocity is shared by base and arm.
 
     mu, sigma: the base's share of linear and of angular motion, 0 (arm) to 1 (base);
     v_b [m/s], w_b [rad/s]: base twist; v_m = dl/dt [m/s], w_m = dpsi/dt [rad/s]: the arm's rates;
     scale: the part of the command that is feasible, 0 to 1 (all rates are scaled alike);
-    verdict: MOVING, or why a law has nothing to give (then all rates and the scale are 0);
-    dtheta [rad/s]: joint rates, where a law decides them itself; else the arm's closed form takes v_m and w_m.
+    verdict: MOVING, or why a law has nothing to give (then all rates and the scale are 0).
     """
 
     mu: float
@@ -171,7 +184,17 @@ class Split(Record, frozen=True):
     w_m: float
     scale: float = 1.0
     verdict: Verdict = Verdict.MOVING
-    dtheta: tuple[float, ...] | None = None
+
+
+class Plan(Record, frozen=True):
+    """A whole body's answer: who moves the hand, before any limit of the robot.
+
+    split: shares and rates; joints: joint rates [rad/s, m/s], where the plan decides them itself; None where the arm is
+    to find them for v_m and w_m.
+    """
+
+    split: Split
+    joints: tuple[float, ...] | None = None
 
 
 class RobotState(Record, frozen=True):

@@ -6,24 +6,29 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from overreach.arm.chain import NO_REST
 from overreach.arm.limits import fastest_towards
-from overreach.arm.planar import (
-    SINE_DAMPED,
-    forward,
-    hand_in_world,
-    inverse,
-    jacobian,
-    joint_rates_over,
-    polar_rates,
-    polar_to_joint_rates,
-    wrap,
-)
+from overreach.arm.mount import Mount
+from overreach.arm.planar import SINE_DAMPED, Arm2R, forward, inverse, jacobian, polar_rates
+from overreach.arm.polar import hand_in_world, wrap
 from overreach.types import Verdict
 from tests.strategies import angles
 
 links = st.floats(0.1, 1.5)
 elbows = st.sampled_from([-1, 1])
 rates = st.floats(-0.5, 0.5)
+
+
+def arm(a: float, b: float, elbow: int = 1) -> Arm2R:
+    return Arm2R((a, b), (-4.8, -math.pi), (4.8, math.pi), (3.0, 3.0), (20.0, 20.0), elbow)
+
+
+def polar_to_joint_rates(
+    theta_2: float, v_m: float, w_m: float, a: float, b: float, elbow: int
+) -> tuple[float, float, bool]:
+    """Return the joint rates of this moment, and whether they are damped."""
+    (one, two), verdict = arm(a, b, elbow).at((0.0, theta_2), Mount()).rates(v_m, w_m, NO_REST, 0.0)
+    return one, two, verdict is not Verdict.MOVING
 
 
 @given(angles, angles, links, links)
@@ -124,7 +129,7 @@ def test_whole_steps_end_where_they_should(l: float, psi: float, v_m: float, w_m
     """Joint rates for a whole step bring the hand to exactly (l + v_m dt, psi + w_m dt)."""
     dt = 0.01
     theta_1, theta_2 = inverse(l, psi, 0.5, 0.5, elbow)
-    one, two, verdict = joint_rates_over(theta_1, theta_2, v_m, w_m, dt, 0.5, 0.5, elbow)
+    (one, two), verdict = arm(0.5, 0.5, elbow).at((theta_1, theta_2), Mount()).rates(v_m, w_m, NO_REST, dt)
     got = forward(theta_1 + one * dt, theta_2 + two * dt, 0.5, 0.5)
     assert got == pytest.approx((l + v_m * dt, psi + w_m * dt), abs=1e-9)
     assert verdict is Verdict.MOVING
@@ -133,7 +138,7 @@ def test_whole_steps_end_where_they_should(l: float, psi: float, v_m: float, w_m
 def test_whole_steps_end_at_the_reach() -> None:
     """A whole step beyond the arm's end goes to its end and says so."""
     theta = inverse(0.99, 0.2, 0.5, 0.5, 1)
-    one, two, verdict = joint_rates_over(*theta, 0.4, 0.0, 0.1, 0.5, 0.5, 1)
+    (one, two), verdict = arm(0.5, 0.5).at(theta, Mount()).rates(0.4, 0.0, NO_REST, 0.1)
     assert forward(theta[0] + one * 0.1, theta[1] + two * 0.1, 0.5, 0.5)[0] == pytest.approx(1.0, abs=1e-9)
     assert verdict is Verdict.OUT_OF_REACH
 

@@ -7,13 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from overreach.arm.mount import Mount
 from overreach.arm.planar import inverse, polar_rates
-from overreach.baselines.separate import separate
-from overreach.baselines.weighted import weighted
 from overreach.errors import SetupError
 from overreach.law.authority import ee_velocity
-from overreach.law.laws import switch
-from overreach.law.workspace import Mount
+from tests.laws import separate, switch, weighted
 from tests.strategies import WORKSPACE, bearings, mounts, speeds
 
 

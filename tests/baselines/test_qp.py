@@ -11,22 +11,25 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from overreach.arm.planar import inverse, polar_rates
-from overreach.baselines.holistic import DAMPER_START, DAMPER_STOP, damper, holistic
-from overreach.baselines.qp import DAMPING, qp
+from overreach.baselines.holistic import DAMPER_START, DAMPER_STOP, Holistic, damper
+from overreach.baselines.holistic import Program as HolisticProgram
+from overreach.baselines.qp import PaperQP, Program
 from overreach.baselines.solver import SOLVERS, solver
-from overreach.baselines.weighted import weighted
-from overreach.control import HandController
+from overreach.baselines.weighted import Weighted
+from overreach.control.controller import HandController
 from overreach.errors import SetupError, UnknownNameError
 from overreach.law.authority import ee_velocity
-from overreach.law.laws import Law
-from overreach.model.planar import PlanarRobot
+from overreach.model.planar import planar
+from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.simulate import simulate
-from overreach.types import Verdict
+from overreach.types import HandTwist, Verdict
+from tests.laws import Bound, holistic, qp, weighted
 from tests.strategies import bearings, lengths, speeds
 
 pytestmark = pytest.mark.filterwarnings("ignore:OSQP exited", "ignore:.*raise_error:PendingDeprecationWarning")
 AGREE = 1e-4
+MODEL = planar()
 REFERENCE = qp(solver="quadprog")
 EACH = {name: qp(solver=name) for name in SOLVERS}
 
@@ -43,13 +46,13 @@ def test_solvers_agree(name: str, l: float, psi: float, u_r: float, u_t: float) 
 @given(lengths, bearings, speeds, speeds)
 def test_qp_is_damped_least_squares_inside_its_limits(l: float, psi: float, u_r: float, u_t: float) -> None:
     """Where no limit is at work the solution is the closed form q = J^T (J J^T + lambda I)^-1 v_ref."""
-    law = EACH["daqp"]
+    program = Program(PaperQP("daqp"), MODEL)
     theta = inverse(l, psi, 0.5, 0.5, 1)
     j_l, at_rest = polar_rates(theta[1], 0.0, 1.0, 0.5, 0.5)
     J = np.array([[math.cos(psi), 0.0, 0.0, j_l], [0.0, 1.0, 1.0, at_rest]])
-    q = J.T @ np.linalg.solve(J @ J.T + DAMPING * np.eye(2), [u_r, u_t / l])
-    if np.all(np.abs(q) < law.q_max):
-        found = law.step(*theta, u_r, u_t / l)
+    q = J.T @ np.linalg.solve(J @ J.T + PaperQP().damping * np.eye(2), [u_r, u_t / l])
+    if np.all(np.abs(q) < program.q_max):
+        found = program.solve(*program.problem(MODEL.arm.at(theta, MODEL.mount), u_r, u_t / l, HandTwist()))
         assert found is not None
         assert found == pytest.approx(q, abs=1e-6)
 
@@ -57,22 +60,20 @@ def test_qp_is_damped_least_squares_inside_its_limits(l: float, psi: float, u_r:
 @given(lengths, bearings, st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
 def test_qp_keeps_its_limits_and_is_optimal(l: float, psi: float, v_c: float, w_c: float) -> None:
     """The rates are within q_max, and no feasible step downhill is left (projected gradient is zero)."""
-    law = EACH["daqp-direct"]
-    theta = inverse(l, psi, 0.5, 0.5, 1)
-    found = law.step(*theta, v_c, w_c)
+    program = Program(PaperQP("daqp-direct"), MODEL)
+    P, q = program.problem(MODEL.arm.at(inverse(l, psi, 0.5, 0.5, 1), MODEL.mount), v_c, w_c, HandTwist())
+    found = program.solve(P, q)
     assert found is not None
-    assert np.all(np.abs(found) <= law.q_max + 1e-6)
-    j_l, j_psi = polar_rates(theta[1], 0.0, 1.0, 0.5, 0.5)
-    P, q = law.problem(psi, j_l, j_psi, v_c, w_c)
+    assert np.all(np.abs(found) <= program.q_max + 1e-6)
     downhill = found - (P @ found + q)
-    assert np.clip(downhill, -law.q_max, law.q_max) == pytest.approx(found, abs=1e-5)
+    assert np.clip(downhill, -program.q_max, program.q_max) == pytest.approx(found, abs=1e-5)
 
 
 def test_a_solver_that_fails_is_a_verdict_and_a_zero() -> None:
     """A solver that gives up, or raises, makes the law answer zero with NO_SOLUTION; nothing is raised."""
     starved = qp(solver="osqp", max_iter=1)
     raising = qp(solver="daqp-direct")
-    raising._least = "no bounds"
+    raising.planner.__self__._least = "no bounds"
     for law in (starved, raising):
         split = law.split(0.6, 0.2, 0.4, 0.1)
         assert (split.v_b, split.w_b, split.v_m, split.w_m, split.scale) == (0.0,) * 5
@@ -93,7 +94,7 @@ def test_a_mistyped_setting_fails_at_set_up(name: str) -> None:
         qp(solver=name, no_such=1.0)
     assert "\n" not in str(caught.value)
     with pytest.raises(UnknownNameError, match="Did you mean 'damping'"):
-        qp(solver=name, dampin=0.1)
+        load_law("qp", {"solver": name, "dampin": 0.1})
     if name != "quadprog":  # its one setting is a switch, and takes anything
         setting = next(key for key in caught.value.valid if "tol" in key or "eps" in key)
         with pytest.raises(SetupError, match=f"cannot use {setting} = 'wide'") as of_value:
@@ -101,8 +102,8 @@ def test_a_mistyped_setting_fails_at_set_up(name: str) -> None:
         assert "\n" not in str(of_value.value)
 
 
-@pytest.mark.parametrize("law", [EACH["daqp"], holistic()], ids=lambda law: law.name)
-def test_what_is_not_finite_has_no_solution(law: Law) -> None:
+@pytest.mark.parametrize("law", [EACH["daqp"], holistic()], ids=lambda law: str(law.name))
+def test_what_is_not_finite_has_no_solution(law: Bound) -> None:
     """A command that is not a number is answered with zero and NO_SOLUTION."""
     for bad in (math.nan, math.inf):
         assert law.split(0.6, 0.2, bad, 0.0).verdict is Verdict.NO_SOLUTION
@@ -111,7 +112,7 @@ def test_what_is_not_finite_has_no_solution(law: Law) -> None:
 def test_no_solution_reaches_whoever_drives() -> None:
     """In a controller no solution means: the robot stands still, and the verdict says why."""
     robot = KinematicRobot()
-    controller = HandController(robot.model, qp(solver="osqp", max_iter=1))
+    controller = HandController(robot.model, PaperQP("osqp", settings={"max_iter": 1}))
     step = controller.step(robot.read(0.0), 0.4, 0.0, 0.005)
     assert step.verdict is Verdict.NO_SOLUTION
     assert (step.twist.v_b, step.twist.w_b, *step.dtheta) == (0.0,) * 4
@@ -132,20 +133,19 @@ def test_a_kept_workspace_remembers_nothing(l: float, psi: float, u_r: float, u_
 
 @given(lengths, st.floats(-0.7, 0.7), speeds, speeds)
 def test_joints_and_polar_coordinates_ask_the_same(l: float, psi: float, u_r: float, u_t: float) -> None:
-    """A law that is asked with joints answers as for where they put the hand, and its rates are those of its joints."""
+    """The polar rates of a plan are those of its joint rates, which move the hand and the base as it says."""
     theta = inverse(l, psi, 0.5, 0.5, 1)
     for law in (EACH["daqp"], holistic(), weighted()):
-        split = law.split_joints(theta, u_r, u_t)
-        assert split == law.split(l, psi, u_r, u_t)
-        if split.dtheta is not None:
-            one, two = split.dtheta
+        split, joints = (plan := law.plan(theta, u_r, u_t)).split, plan.joints
+        if joints is not None:
+            one, two = joints
             assert polar_rates(theta[1], one, two, 0.5, 0.5) == pytest.approx((split.v_m, split.w_m), abs=1e-9)
 
 
 def test_weighted_goes_through_its_singularity() -> None:
     """A law that decides joint rates is asked with the joints as they are: the elbow may change its side."""
-    rows = simulate("mixed", weighted(base_weight=10.0)).rows
-    elbow = [row.theta_2 for row in rows]
+    rows = simulate("mixed", Weighted(10.0)).rows
+    elbow = [row.theta[1] for row in rows]
     assert min(elbow) < -0.1
     assert max(elbow) > 0.1
     still = sum(a == b for a, b in pairwise(elbow) if abs(a) < 0.05)
@@ -166,10 +166,10 @@ def test_holistic_finds_the_best_of_all_that_is_allowed(
     l: float, psi: float, u_r: float, u_t: float, chance: random.Random
 ) -> None:
     """J q + delta = u in true kinematics, q within limits and dampers, and nothing allowed costs less."""
-    law = holistic()
+    law, program = holistic(), HolisticProgram(Holistic(), MODEL)
     theta = inverse(l, psi, 0.5, 0.5, 1)
     j_l, j_psi = polar_rates(theta[1], 0.0, 1.0, 0.5, 0.5)
-    Q, C, lb, ub, A, b = law.problem(l, psi, theta, j_l, j_psi, u_r, u_t)
+    Q, C, lb, ub, A, b = program.problem(MODEL.arm.at(theta, MODEL.mount), HandTwist(u_r, u_t))
 
     def completed(q: list[float]) -> Any:
         """Return q with the slack that makes it carry out the command."""
@@ -195,8 +195,8 @@ def test_holistic_finds_the_best_of_all_that_is_allowed(
 
 def test_holistic_turns_the_base_to_the_hand_and_keeps_the_arm_bent() -> None:
     """Pushed on, the base comes to face the hand, and the arm goes to where it is most manipulable: theta_2 = pi/2."""
-    robot = KinematicRobot(PlanarRobot(), psi=0.4, l=0.8)
-    controller = HandController(robot.model, holistic())
+    robot = KinematicRobot(MODEL, psi=0.4, l=0.8)
+    controller = HandController(robot.model, Holistic())
     for k in range(4000):
         step = controller.step(robot.read(k * 0.005), 0.3, 0.0, 0.005)
         robot.write(step.twist, step.dtheta, k * 0.005)

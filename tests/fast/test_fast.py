@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from overreach.arm.step import planar_step
+from overreach.arm.mount import Mount
 from overreach.bench.batch import random_states
 from overreach.bench.vectorised import numpy_step
 from overreach.errors import SetupError
 from overreach.fast import mathematics
 from overreach.fast.batch import FEW, Batch, compile_batch
 from overreach.fast.robot import compile_law, compile_step
+from overreach.fast.step import planar_step
 from overreach.law import authority
-from overreach.law.blend import Blend, smoothstep, tanh
+from overreach.law.blend import Blend, Smoothstep, Tanh
 from overreach.law.laws import constants
-from overreach.law.workspace import Mount, Workspace
-from overreach.model.planar import PlanarRobot
+from overreach.model.planar import planar
 
 SAME = 1e-12
 CASES = 100_000
@@ -47,11 +47,11 @@ def batch() -> Batch:
 
 
 @pytest.mark.parametrize("mount", [Mount(), OFF], ids=["centred", "off"])
-@pytest.mark.parametrize("blend", [smoothstep(), tanh()], ids=lambda blend: str(blend.name))
+@pytest.mark.parametrize("blend", [Smoothstep(), Tanh()], ids=lambda blend: str(blend.name))
 def test_compiled_is_interpreted(blend: Blend, mount: Mount) -> None:
     """One source: on 1e5 random states the compiled step and the batch give what Python gives, to 1e-12."""
-    robot = PlanarRobot(mount=mount)
-    limits, three = constants(robot.workspace, blend, mount)
+    robot = planar(mount=mount)
+    limits, three = constants(robot, blend)
     one = compile_step(robot, blend)
     step: Callable[..., Any] = planar_step
     given = states(CASES // 4, 7, mount.yaw)
@@ -67,9 +67,9 @@ def test_compiled_is_interpreted(blend: Blend, mount: Mount) -> None:
 @pytest.mark.parametrize("mount", [Mount(), OFF], ids=["centred", "off"])
 def test_compiled_law_is_the_law(mount: Mount) -> None:
     """The compiled law gives what `authority.exact` gives, to 1e-12 of the rates' size, on 1e5 random states."""
-    blend = smoothstep()
-    limits, three = constants(Workspace(), blend, mount)
-    law = compile_law(Workspace(), blend, mount)
+    blend = Smoothstep()
+    limits, three = constants(planar(mount=mount), blend)
+    law = compile_law(planar(mount=mount), blend)
     plain: Callable[..., Any] = authority.exact
     chance = random.Random(3)
     for _ in range(CASES // 2):
@@ -92,8 +92,8 @@ def test_batch_of_any_size_is_the_same(batch: Batch) -> None:
 
 def test_numpy_rival_computes_the_same(batch: Batch) -> None:
     """What the batch is compared with does the same work: equal to 1e-12, singular arms included."""
-    robot, blend = PlanarRobot(), smoothstep()
-    limits, _ = constants(robot.workspace, blend, robot.mount)
+    robot, blend = planar(), Smoothstep()
+    limits, _ = constants(robot, blend)
     given = states(20_000, 11)
     want, got = np.empty((4, 20_000)), np.empty((4, 20_000))
     batch(given, want)

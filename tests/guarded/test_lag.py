@@ -9,18 +9,20 @@ import msgspec
 import pytest
 
 from overreach.arm.planar import forward
-from overreach.control import HandController
+from overreach.control.controller import HandController
 from overreach.gate.limits import Limits, slew
 from overreach.law.authority import arm_residual
-from overreach.law.laws import exact
+from overreach.law.laws import Exact
 from overreach.law.lead import lead
-from overreach.model.planar import BaseLimits, PlanarRobot
+from overreach.model.base import Base
+from overreach.model.planar import planar
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Frame, RobotState, Verdict
 
 DT = 0.005
-RAISED = BaseLimits(v_max=1.0, w_max=3.0, dv_max=5.0, dw_max=20.0)
+USUAL = planar().base
+RAISED = Base(v_max=1.0, w_max=3.0, dv_max=5.0, dw_max=20.0, footprint=(0.5, 0.4))
 FAST = Limits(v_c=0.6, w_c=0.6)
 FAR = 0.9
 """L_max + q/2 [m] of the planar robot's workspace and blend."""
@@ -38,11 +40,11 @@ class Push:
     """The hand is pushed along one line in the world, at `speed` [m/s] and `angle` [rad], for `seconds`."""
 
     def __init__(
-        self, speed: float, angle: float, imperfection: Imperfection, lag: float, base: BaseLimits, seconds: float = 6.0
+        self, speed: float, angle: float, imperfection: Imperfection, lag: float, base: Base, seconds: float = 6.0
     ) -> None:
-        model = PlanarRobot(base=msgspec.structs.replace(base, lag=lag))
+        model = planar(base=msgspec.structs.replace(base, lag=lag))
         robot = KinematicRobot(model, imperfection)
-        controller = HandController(model, exact(model.workspace), Frame.WORLD)
+        controller = HandController(model, Exact(), Frame.WORLD)
         self.errors: list[float] = []
         self.speeds: list[float] = []
         self.scale = 1.0
@@ -73,7 +75,7 @@ class Push:
 @pytest.mark.parametrize("stated", [True, False])
 def test_a_lagging_base_does_not_disturb_the_hand(lag: float, angle: float, stated: bool) -> None:
     """With a base lag of up to 0.3 s, at 0.4 m/s, straight and diagonal: off by < 0.02 m/s, nothing is scaled."""
-    push = Push(0.4, angle, Imperfection(base_lag_s=lag), lag if stated else 0.0, BaseLimits())
+    push = Push(0.4, angle, Imperfection(base_lag_s=lag), lag if stated else 0.0, USUAL)
     assert max(push.errors) < 0.02
     assert push.scale == 1.0
     assert not SCALED & set(push.verdicts)
@@ -101,9 +103,9 @@ def test_faster_with_raised_limits(lag: float, angle: float) -> None:
 @pytest.mark.parametrize("lag", [0.05, 0.15, 0.3])
 def test_the_band_under_lag(lag: float) -> None:
     """Pushed straight on, l ends at L_max + q/2 where the lag T is stated; else it passes it, by up to v T."""
-    stated = Push(0.4, 0.0, Imperfection(base_lag_s=lag), lag, BaseLimits())
+    stated = Push(0.4, 0.0, Imperfection(base_lag_s=lag), lag, USUAL)
     assert stated.longest <= FAR + 1e-9
-    silent = Push(0.4, 0.0, Imperfection(base_lag_s=lag), 0.0, BaseLimits())
+    silent = Push(0.4, 0.0, Imperfection(base_lag_s=lag), 0.0, USUAL)
     assert silent.longest <= FAR + 0.4 * lag
     if lag >= 0.15:
         assert silent.longest > FAR + 0.2 * 0.4 * lag
@@ -116,11 +118,11 @@ def test_late_odometry_does_not_speed_up_the_hand(late: float, angle: float) -> 
 
     Held against what was asked last, they make it 0.223 m/s of 0.2 at 50 ms, and 0.269 at 150 ms.
     """
-    push = Push(0.2, angle, Imperfection(feedback_delay_s=late), 0.0, BaseLimits())
+    push = Push(0.2, angle, Imperfection(feedback_delay_s=late), 0.0, USUAL)
     assert max(push.speeds) < 0.203
     assert push.scale == 1.0
     assert push.speeds[-1] == pytest.approx(0.2, abs=1e-3)
-    late_and_slow = Push(0.2, angle, Imperfection(base_lag_s=0.15, feedback_delay_s=late), 0.0, BaseLimits())
+    late_and_slow = Push(0.2, angle, Imperfection(base_lag_s=0.15, feedback_delay_s=late), 0.0, USUAL)
     assert max(late_and_slow.speeds) < 0.2 + 0.15 * late
 
 

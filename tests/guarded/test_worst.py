@@ -14,13 +14,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from overreach.control import HandController
+from overreach.control.controller import HandController
 from overreach.errors import LONGEST_TOLD
-from overreach.law.blend import smoothstep
-from overreach.law.laws import exact
-from overreach.law.workspace import Mount, Workspace
+from overreach.law.laws import Exact
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import Frame, Motion, RobotState, Split, Verdict
+from overreach.types import Motion, Plan, RobotState, Split, Verdict
+from tests.laws import Given, exact
 from tests.side import Side
 
 ODD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e9, -3.0, 0.0, 5e-324)
@@ -29,22 +28,22 @@ RATES = ("v_b", "w_b", "v_m", "w_m", "mu", "sigma", "scale")
 seeds = st.integers(0, 10**9)
 
 
-class Plug:
-    """A law whose answers are altered by a function of (number of the call, right answer)."""
+class Counted:
+    """The exact law, altered; counts its calls."""
 
-    name, frame, closes_residual = "plug", Frame.HAND, True
-    workspace, blend, mount = Workspace(), smoothstep(), Mount()
-
-    def __init__(self, altered: Callable[[int, Split], Any], closes: bool = True) -> None:
+    def __init__(self, altered: Callable[[int, Split], Any]) -> None:
         self.calls = 0
-        self.closes_residual = closes
-        self._altered = altered
-        self._law = exact()
+        self._altered, self._law = altered, exact()
 
-    def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
+    def __call__(self, *case: float) -> Split:
         self.calls += 1
-        answer: Split = self._altered(self.calls, self._law.split(l, psi, u_r, u_t))
+        answer: Split = self._altered(self.calls, self._law.split(*case))
         return answer
+
+
+def plug(altered: Callable[[int, Split], Any], closes: bool = True) -> Given:
+    """Return a law whose answers are altered by a function of (number of the call, right answer)."""
+    return Given(Counted(altered), "plug", closes)
 
 
 def put(state: RobotState, field: str, value: float) -> RobotState:
@@ -96,7 +95,7 @@ def test_any_plan_and_any_feedback(seed: int) -> None:
             raise chance.choice((ValueError, ZeroDivisionError, MemoryError, RecursionError, KeyError))("plug-in")
         return msgspec.structs.replace(right, **{chance.choice(RATES): chance.choice(ODD)})
 
-    side = Side(Plug(answer, chance.random() < 0.7), chance.uniform(1.0, 1e5), altered=state)
+    side = Side(plug(answer, chance.random() < 0.7), chance.uniform(1.0, 1e5), altered=state)
     for _ in range(12):
         act = chance.randrange(6)
         if act < 3:
@@ -170,15 +169,15 @@ def test_every_single_fault_of_the_feedback(field: str, way: str, at: float, lat
 @given(st.integers(1, 400), st.floats(-0.4, 0.4), st.floats(-0.4, 0.4))
 def test_every_single_fault_of_a_law(field: str, bad: float, at: int, v_c: float, w_c: float) -> None:
     """One number of a law's answer goes wrong at any time: FAULT names law and number, or a scale mends it."""
-    law = Plug(lambda k, right: msgspec.structs.replace(right, **{field: bad}) if k >= at else right)
+    law = plug(lambda k, right: msgspec.structs.replace(right, **{field: bad}) if k >= at else right)
     side = Side(law)
     side.arm()
     step = side.drive(2.5, v_c, w_c)
     side.check()
     if v_c == 0.0 and w_c == 0.0:  # nothing to move: the law is not asked, and can do no harm
-        assert law.calls == 0
+        assert law.share.calls == 0
         assert not any(map(any, side.written))
-    elif law.calls < at:
+    elif law.share.calls < at:
         assert step.verdict is not Verdict.FAULT
     elif math.isfinite(bad) and field not in ("scale",):
         assert abs(step.split.v_b) <= 0.6
@@ -200,8 +199,8 @@ def test_every_single_fault_of_a_law(field: str, bad: float, at: int, v_c: float
         ("nonsense", "AttributeError"),
         (Split(0.0, 0.0, "fast", 0.0, 0.0, 0.0), "TypeError"),  # type: ignore[arg-type]
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict="go"), "answered the verdict 'go'"),  # type: ignore[arg-type]
-        (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, dtheta=(0.1,)), "ValueError"),
-        (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, dtheta=(0.1, math.nan)), "rates too great"),
+        (Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.1,)), "ValueError"),
+        (Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.1, math.nan)), "rates too great"),
         (Split(0.0, 0.0, 1e308, 1e308, 1e308, 1e308), "rates too great"),
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict=Verdict.FAULT), "answered the verdict 'fault'"),
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict="x" * 9999), "answered the verdict 'xxx"),  # type: ignore[arg-type]
@@ -209,7 +208,7 @@ def test_every_single_fault_of_a_law(field: str, bad: float, at: int, v_c: float
 )
 def test_nonsense_is_a_fault_of_the_law(answer: Any, says: str) -> None:
     """Whatever a law answers that is no answer: FAULT, at rest and in motion, with what it was."""
-    side = Side(Plug(lambda k, right: answer if k > 100 else right))
+    side = Side(plug(lambda k, right: answer if k > 100 else right))
     side.arm()
     step = side.drive(1.5, 0.3)
     assert step.verdict is Verdict.FAULT
@@ -220,10 +219,10 @@ def test_nonsense_is_a_fault_of_the_law(answer: Any, says: str) -> None:
 
 def test_while_nothing_may_move_the_law_is_not_asked() -> None:
     """Disarmed, stopped or faulted, a law is not called: it can neither move the robot nor hold up its ramp."""
-    law = Plug(lambda k, right: right)
+    law = plug(lambda k, right: right)
     side = Side(law)
     side.drive(0.2, 0.3)
-    assert law.calls == 0
+    assert law.share.calls == 0
     side.arm()
     side.drive(1.5, 0.3)
     for act in (side.gate.latch.disarm, side.gate.latch.stop, lambda: side.controller.guard.latch("why")):
@@ -232,9 +231,9 @@ def test_while_nothing_may_move_the_law_is_not_asked() -> None:
         side.drive(0.5, 0.3)
         act()
         side.drive(0.2, 0.3)
-        calls = law.calls
+        calls = law.share.calls
         step = side.drive(0.5, 0.3)
-        assert law.calls == calls
+        assert law.share.calls == calls
         assert not any(step.rates)
         assert step.split.mu > 0.9  # who had the hand is still shown
     side.check()
@@ -256,7 +255,7 @@ def test_numbers_of_other_types_are_taken_as_floats() -> None:
         kind = other[round(true.t * 200) % 4]
         return msgspec.structs.replace(true, x_b=kind(true.x_b), v_b=kind(true.v_b), theta=tuple(map(kind, true.theta)))
 
-    side = Side(Plug(answer), altered=report)
+    side = Side(plug(answer), altered=report)
     side.arm()
     for _ in range(300):
         step = side.drive(0.005, 0.3, 0.1)
@@ -299,7 +298,7 @@ def test_an_exception_of_a_law_is_a_fault(error: BaseException) -> None:
             raise error
         return right
 
-    side = Side(Plug(raising))
+    side = Side(plug(raising))
     side.arm()
     step = side.drive(1.5)
     side.check()
@@ -396,7 +395,7 @@ def test_frozen_feedback_then_a_stop() -> None:
 def test_a_command_that_is_not_finite_is_none(bad: float, second: bool) -> None:
     """Who drives without a gate and commands NaN gets a ramp, and NOT_FINITE; the next good command is obeyed."""
     robot = KinematicRobot()
-    hand = HandController(robot.model, exact())
+    hand = HandController(robot.model, Exact())
     for k in range(300):
         command = (0.2, bad) if second else (bad, 0.0)
         step = hand.step(robot.read(k / 200), *(command if 100 <= k < 200 else (0.2, 0.0)), 1 / 200)
@@ -409,7 +408,7 @@ def test_a_command_that_is_not_finite_is_none(bad: float, second: bool) -> None:
 
 def test_without_any_state_nothing_moves() -> None:
     """A robot that has reported nothing yet is not moved: FAULT."""
-    hand = HandController(KinematicRobot().model, exact())
+    hand = HandController(KinematicRobot().model, Exact())
     for _ in range(50):
         step = hand.step(None, 0.4, 0.0, 0.005)
         assert step.verdict is Verdict.FAULT
@@ -420,7 +419,7 @@ def test_without_any_state_nothing_moves() -> None:
 def test_who_tells_no_time_is_given_one() -> None:
     """Without `now` the time is that of the newest state; where states stand still it goes on, and they are frozen."""
     robot = KinematicRobot()
-    hand = HandController(robot.model, exact())
+    hand = HandController(robot.model, Exact())
     for k in range(1000):  # a loop that runs 2 % slow, for 5 s
         step = hand.step(robot.read(k * 0.0051), 0.2, 0.0, 0.005)
         robot.write(step.twist, step.dtheta, k * 0.0051)
@@ -433,7 +432,7 @@ def test_who_tells_no_time_is_given_one() -> None:
 def test_a_law_without_an_answer_ramps_the_whole_robot() -> None:
     """While a law has no solution the robot ramps along its own direction, and stays; the verdict says why."""
     none = Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, Verdict.NO_SOLUTION)
-    side = Side(Plug(lambda k, right: none if k > 300 else right))
+    side = Side(plug(lambda k, right: none if k > 300 else right))
     side.arm()
     side.drive(1.5, 0.3, 0.2)
     before = side.written[-1]
@@ -461,7 +460,7 @@ def test_the_end_of_a_run_ramps_without_state_or_law() -> None:
 def test_motion_is_what_the_gate_says() -> None:
     """A command that is not zero moves nothing where the gate says that nothing may move."""
     robot = KinematicRobot()
-    hand = HandController(robot.model, exact())
+    hand = HandController(robot.model, Exact())
     for k in range(100):
         step = hand.step(robot.read(k / 200), 0.3, 0.0, 1 / 200, motion=Motion.NONE)
         assert not any(step.rates)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from overreach.arm.mount import Mount
 from overreach.law import authority
-from overreach.law.blend import Blend, smoothstep, step, tanh
-from overreach.law.laws import Law, exact, paper, switch
-from overreach.law.workspace import Mount
+from overreach.law.blend import Blend, Smoothstep, Step, Tanh
+from tests.laws import Bound, exact, paper, switch
 from tests.strategies import MOUNT_FREE, WORKSPACE, bearings, blends, lengths, limits_of, mounts, speeds
 
 TINY = 1e-12
@@ -49,7 +49,7 @@ def test_exact_is_exact_in_10_000_random_cases() -> None:
         mount = (
             Mount(chance.uniform(-0.2, 0.3), chance.uniform(-0.2, 0.2), chance.uniform(-0.5, 0.5)) if k % 2 else Mount()
         )
-        blend = (tanh(chance.uniform(5, 200), chance.uniform(5, 200)), smoothstep(), step())[k % 3]
+        blend = (Tanh(chance.uniform(5, 200), chance.uniform(5, 200)), Smoothstep(), Step())[k % 3]
         check_exact(
             chance.uniform(0.42, 0.95),
             chance.uniform(-0.75, 0.75),
@@ -115,7 +115,7 @@ def test_exact_is_the_closed_form(l: float, psi: float, u_r: float, u_t: float, 
 
 
 @settings(max_examples=1_000)
-@given(lengths, bearings, speeds, mounts, st.floats(0.05, 0.2), st.sampled_from([tanh(), smoothstep()]))
+@given(lengths, bearings, speeds, mounts, st.floats(0.05, 0.2), st.sampled_from([Tanh(), Smoothstep()]))
 def test_exact_is_continuous_where_the_command_turns_back(
     l: float, psi: float, u_t: float, mount: Mount, speed: float, blend: Blend
 ) -> None:
@@ -179,21 +179,21 @@ def test_narrow_tanh_is_the_switch(l: float, psi: float, v_c: float, w_c: float)
     edges = (l - WORKSPACE.l_min, l - WORKSPACE.l_max, psi - WORKSPACE.psi_min, psi - WORKSPACE.psi_max)
     if min(map(abs, edges)) < 1e-4:
         return
-    narrow = paper(WORKSPACE, tanh(1e6, 1e6)).split(l, psi, v_c, l * w_c)
+    narrow = paper(WORKSPACE, Tanh(1e6, 1e6)).split(l, psi, v_c, l * w_c)
     hard = switch(WORKSPACE).split(l, psi, v_c, l * w_c)
     assert (narrow.v_b, narrow.w_b, narrow.v_m, narrow.w_m) == pytest.approx(
         (hard.v_b, hard.w_b, hard.v_m, hard.w_m), abs=TINY
     )
 
 
-@pytest.mark.parametrize("law", [exact(blend=tanh()), paper(), switch()], ids=lambda law: law.name)
+@pytest.mark.parametrize("law", [exact(blend=Tanh()), paper(), switch()], ids=lambda law: law.name)
 @given(
     st.floats(1e-6, 10.0),
     st.floats(-4.0, 4.0),
     st.floats(-1e6, 1e6),
     st.floats(-1e6, 1e6),
 )
-def test_rates_are_finite_and_bounded_everywhere(law: Law, l: float, psi: float, u_r: float, u_t: float) -> None:
+def test_rates_are_finite_and_bounded_everywhere(law: Bound, l: float, psi: float, u_r: float, u_t: float) -> None:
     """Beside the base, behind it, anywhere: rates stay finite, the base's speed bounded, scale in [0, 1]."""
     split = law.split(l, psi, u_r, u_t)
     rates = (split.v_b, split.w_b, split.v_m, split.w_m)
@@ -205,7 +205,7 @@ def test_rates_are_finite_and_bounded_everywhere(law: Law, l: float, psi: float,
 @given(lengths, st.floats(0.0, 1e-3), st.sampled_from([-1.0, 1.0]), st.floats(0.05, 0.4))
 def test_beside_the_base_the_whole_command_is_scaled(l: float, off: float, side: float, v_c: float) -> None:
     """As the hand comes beside the base, drive and scale go to 0 together: nothing races, EE keeps its way."""
-    law = exact(WORKSPACE, step())
+    law = exact(WORKSPACE, Step())
     psi = side * (math.pi / 2 - off)
     split = law.split(WORKSPACE.l_max + 0.05, psi, v_c, 0.0)
     assert split.scale <= (authority.BASE_GAIN * math.sin(1e-3)) ** 2 + TINY
@@ -231,13 +231,13 @@ def test_arm_closes_the_residual_of_any_base_motion(
 @given(bearings, st.sampled_from([-1.0, 1.0]), mounts)
 def test_inside_the_workspace_the_base_stands_still(psi: float, g: float, mount: Mount) -> None:
     """With a blend of compact support the base does not move at all while the hand is well inside."""
-    split = exact(WORKSPACE, smoothstep(0.1, 0.1), mount).split(0.65, psi * 0.7, g * 0.4, -g * 0.2)
+    split = exact(WORKSPACE, Smoothstep(0.1, 0.1), mount).split(0.65, psi * 0.7, g * 0.4, -g * 0.2)
     assert (split.mu, split.sigma, split.v_b, split.w_b) == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_limits_helper_matches_the_law() -> None:
     """The six numbers that the tests hand to the law's functions are those that a law makes of its workspace."""
-    blend = tanh(40.0, 30.0)
+    blend = Tanh(40.0, 30.0)
     direct = authority.exact(0.8, 0.2, 0.3, 0.1, blend.rise, limits_of(WORKSPACE, blend), (0.0, 0.0, 0.0))
     split = exact(WORKSPACE, blend).split(0.8, 0.2, 0.3, 0.1)
     assert direct == (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale)

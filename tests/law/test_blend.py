@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from overreach.errors import SetupError, UnknownNameError
-from overreach.law.blend import Blend, blend_from, rise_smoothstep, rise_step, rise_tanh, smoothstep, step, tanh
+from overreach.law.blend import Blend, Smoothstep, Step, Tanh, rise_smoothstep, rise_step, rise_tanh
+from overreach.plugs import load_blend
 from tests.strategies import blends
 
 distances = st.floats(-2.0, 2.0)
@@ -54,7 +55,7 @@ def test_step_favours_the_arm_at_the_limit() -> None:
 @given(st.floats(5.0, 200.0))
 def test_width_of_tanh_holds_98_per_cent(alpha: float) -> None:
     """The transition width Q of tanh, ln(99)/alpha, goes from 1 % to 99 %."""
-    blend = tanh(alpha, alpha)
+    blend = Tanh(alpha, alpha)
     assert blend.rise(-blend.width_l / 2, alpha) == pytest.approx(0.01, abs=1e-12)
     assert blend.rise(blend.width_l / 2, alpha) == pytest.approx(0.99, abs=1e-12)
 
@@ -63,15 +64,17 @@ def test_width_of_tanh_holds_98_per_cent(alpha: float) -> None:
 def test_widths_must_be_positive(bad: float) -> None:
     """A width that is not a finite number above 0 is an error at set-up, not a blend."""
     with pytest.raises(SetupError, match="> 0"):
-        tanh(bad)
+        Tanh(bad)
     with pytest.raises(SetupError, match="> 0"):
-        smoothstep(0.1, bad)
+        Smoothstep(0.1, bad)
 
 
 def test_blends_by_name() -> None:
     """Every blend has a name, takes its own parameters, and an unknown name is met with the nearest."""
-    assert blend_from("tanh", 10.0, 20.0, 0.1, 0.2) == tanh(10.0, 20.0)
-    assert blend_from("smoothstep", 10.0, 20.0, 0.1, 0.2) == smoothstep(0.1, 0.2)
-    assert blend_from("step", 10.0, 20.0, 0.1, 0.2) == step()
+    assert load_blend("tanh", {"alpha": 10.0, "beta": 20.0}) == Tanh(10.0, 20.0)
+    assert load_blend("smoothstep", {"q_l": 0.1, "q_psi": 0.2}) == Smoothstep(0.1, 0.2)
+    assert load_blend("step") == Step()
     with pytest.raises(UnknownNameError, match="'smoothstep'"):
-        blend_from("smothstep", 10.0, 20.0, 0.1, 0.2)
+        load_blend("smothstep")
+    with pytest.raises(UnknownNameError, match=r"unknown parameter of the blend tanh 'alfa'\. Did you mean 'alpha'\?"):
+        load_blend("tanh", {"alfa": 10.0})

@@ -5,19 +5,21 @@ from typing import Any
 
 import pytest
 
-from overreach.law.blend import step
-from overreach.law.laws import exact, paper
-from overreach.law.workspace import Workspace
+from overreach.law.blend import Step
+from overreach.law.laws import Exact, Paper
+from overreach.model.planar import load_planar, planar
 from overreach.run import metrics
 from overreach.run.scenario import load_scenario, parse_scenario
 from overreach.run.simulate import Row, simulate
 from overreach.run.summary import LINES, table
-from overreach.types import Split
+from overreach.types import Frame, Split
+from tests.laws import Given, exact
+from tests.strategies import WORKSPACE
 
-STILL = Row(*[0.0] * len(Row._fields))
+STILL = Row._make([*[0.0] * (len(Row._fields) - 1), (0.0, 0.0)])
 
 
-def rows(**columns: list[float]) -> list[Row]:
+def rows(**columns: list[Any]) -> list[Row]:
     """Return rows that are zero but for the columns given."""
     return [STILL._replace(**dict(zip(columns, values, strict=True))) for values in zip(*columns.values(), strict=True)]
 
@@ -62,15 +64,16 @@ def test_an_authority_change_is_a_change_of_hands() -> None:
 
 def test_beyond_is_measured_from_the_nearer_limit() -> None:
     """Outside in l and psi by how far, on either side; 0 inside."""
-    l, psi = metrics.beyond(rows(l=[0.5, 0.4, 0.9], psi=[0.0, -0.7, 0.65]), Workspace())
+    l, psi = metrics.beyond(rows(l=[0.5, 0.4, 0.9], psi=[0.0, -0.7, 0.65]), WORKSPACE)
     assert l == pytest.approx([0.0, 0.05, 0.05])
     assert psi == pytest.approx([0.0, 0.1, 0.05])
 
 
 def test_manipulability_is_the_determinant_of_the_jacobian() -> None:
     """a b |sin theta_2|: greatest with the elbow square, 0 straight."""
-    assert metrics.manipulability_min(rows(theta_2=[math.pi / 2]), (0.5, 0.4)) == pytest.approx(0.2)
-    assert metrics.manipulability_min(rows(theta_2=[1.0, 0.0, -1.0]), (0.5, 0.4)) == 0.0
+    model = load_planar("[arm]\nlinks = [0.5, 0.4]\n[workspace]\nl_max = 0.8")
+    assert metrics.manipulability_min(rows(theta=[(0.3, math.pi / 2)]), model) == pytest.approx(0.2)
+    assert metrics.manipulability_min(rows(theta=[(0.0, 1.0), (0.0, 0.0), (0.1, -1.0)]), model) == 0.0
 
 
 def test_saturated_is_the_part_of_steps_at_a_limit() -> None:
@@ -82,7 +85,7 @@ def test_joint_speeds_are_those_of_the_joints() -> None:
     """Peak joint speed and acceleration of a run are finite differences of its joint angles."""
     run = simulate("reach")
     dt = run.scenario.dt
-    speeds = [(b.theta_2 - a.theta_2) / dt for a, b in zip(run.rows, run.rows[1:], strict=False)]
+    speeds = [(b.theta[1] - a.theta[1]) / dt for a, b in zip(run.rows, run.rows[1:], strict=False)]
     assert run.summary.peak_dtheta == pytest.approx(max(map(abs, speeds)), rel=1e-9)
     assert run.summary.peak_ddtheta > run.summary.peak_dtheta
 
@@ -90,7 +93,7 @@ def test_joint_speeds_are_those_of_the_joints() -> None:
 def test_hard_switch_varies_more_than_a_blend() -> None:
     """Through a limit and back the hard switch changes the base's acceleration most: all at once."""
     scenario = load_scenario("outward")
-    hard, soft = simulate(scenario, exact(blend=step())), simulate(scenario, exact())
+    hard, soft = simulate(scenario, Exact(Step())), simulate(scenario, Exact())
     jump = max(metrics.slopes([row.v_b for row in hard.rows], scenario.dt))
     assert jump == pytest.approx(0.4 / scenario.dt)
     ramp = [row.v_b for row in soft.rows if row.t < 5.0]
@@ -115,15 +118,11 @@ def test_cost_is_asked_on_the_states_of_the_run() -> None:
     law = exact(blend=run.scenario.blend)
     seen = []
 
-    class Watched:
-        def __getattr__(self, name: str) -> Any:
-            return getattr(law, name)
+    def share(*case: float) -> Split:
+        seen.append(case)
+        return law.split(*case)
 
-        def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
-            seen.append((l, psi, u_r, u_t))
-            return law.split(l, psi, u_r, u_t)
-
-    cost = metrics.cost_per_step(Watched(), law.frame, run.rows, 0.0)
+    cost = metrics.cost_per_step(Given(share), Frame.HAND, run.rows, planar())
     assert cost > 0.0
     assert 2_000 <= len(seen) <= 2_001
     first = run.rows[0]
@@ -135,7 +134,7 @@ def test_cost_is_asked_on_the_states_of_the_run() -> None:
 def test_dither_swings_the_hand_by_what_it_says(l: float, psi: float) -> None:
     """Inside the workspace, where the arm does all, a tremor makes l and psi swing by exactly so much."""
     text = f"[command]\nduration = 2.0\nsegments = []\n[dither]\nl = {l}\npsi = {psi}\nf = 2.0\n"
-    run = simulate(parse_scenario(text), paper())
+    run = simulate(parse_scenario(text), Paper())
     for name, start, swing in (("l", 0.65, l), ("psi", 0.0, psi)):
         values = [getattr(row, name) - start for row in run.rows]
         assert max(values) == pytest.approx(swing, abs=0.01 * swing + 1e-12)

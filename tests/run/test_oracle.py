@@ -11,11 +11,12 @@ import pytest
 from scipy.linalg import expm
 from scipy.special import wrightomega
 
-from overreach.arm.planar import hand_in_world, inverse
-from overreach.law.blend import tanh
-from overreach.law.laws import exact
-from overreach.law.workspace import Mount, Workspace
-from overreach.model.planar import PlanarRobot
+from overreach.arm.mount import Mount
+from overreach.arm.planar import inverse
+from overreach.arm.polar import hand_in_world
+from overreach.law.blend import Tanh
+from overreach.law.laws import Exact
+from overreach.model.planar import planar
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.law_alone import LawAlone
 from overreach.run.scenario import parse_scenario
@@ -104,8 +105,8 @@ def test_the_hand_moves_as_commanded_in_the_world(centred: bool) -> None:
 
 def check_one_step(l: float, psi: float, theta_b: float, turned: float, v_c: float, w_c: float, mount: Mount) -> None:
     dt = 1e-3
-    model = PlanarRobot(mount=mount)
-    controller = LawAlone(model, exact(Workspace(), tanh(), mount), Frame.HAND, whole_steps=True)
+    model = planar(mount=mount)
+    controller = LawAlone(model, Exact(Tanh()), Frame.HAND)
     theta = inverse(l, psi, 0.5, 0.5, 1)
     state = RobotState(0.0, 0.3, -0.2, theta_b, 0.0, 0.0, theta, (0.0, 0.0))
     heading = controller.locate(state).theta_e + turned
@@ -241,14 +242,15 @@ def test_reported_error_is_what_the_positions_say() -> None:
 
 def test_arm_makes_up_for_a_base_that_does_otherwise() -> None:
     """If the base was slower than asked, the arm's next rates make the EE exact for the base as it goes on."""
-    model = PlanarRobot()
-    controller = LawAlone(model, exact())
+    model = planar()
+    controller = LawAlone(model, Exact())
     theta = inverse(0.9, 0.3, 0.5, 0.5, 1)
     state = RobotState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta, (0.0, 0.0))
     first = controller.step(state, V, 0.0, 0.005)
     slip = BaseTwist(-0.1, 0.05)
+    dt = 1e-6  # a period ends exactly where it should, so that in a short one this moment's rates are seen
     real = RobotState(0.005, 0.0, 0.0, 0.0, first.split.v_b + slip.v_b, first.split.w_b + slip.w_b, theta, first.dtheta)
-    second = controller.step(real, V, 0.0, 0.005)
+    second = controller.step(real, V, 0.0, dt)
     twist = BaseTwist(second.split.v_b + slip.v_b, second.split.w_b + slip.w_b)
     h = 1e-6
     after = (theta[0] + h * second.dtheta[0], theta[1] + h * second.dtheta[1])

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import sqrt
 
-from overreach.model.planar import Arm2R
+from overreach.types import Channel
 
 
 def fastest_towards(
@@ -25,16 +26,14 @@ Room = tuple[tuple[float, float], ...]
 """Per joint the least and the greatest rate [rad/s] that are allowed."""
 
 
-def room(arm: Arm2R, theta: tuple[float, ...], dt: float) -> Room:
-    """Return `fastest_towards` both ends for every joint of `arm`, braking at half of what the joint can."""
+def room(joints: Sequence[Channel], theta: tuple[float, ...], dt: float) -> Room:
+    """Return `fastest_towards` both ends for every joint, braking at half of what the joint can."""
     return tuple(
         [
             (
-                -fastest_towards(angle, -1.0, least, most, speed, 0.5 * braking, dt),
-                fastest_towards(angle, 1.0, least, most, speed, 0.5 * braking, dt),
+                -fastest_towards(angle, -1.0, joint.lower, joint.upper, joint.rate_max, 0.5 * joint.change_max, dt),
+                fastest_towards(angle, 1.0, joint.lower, joint.upper, joint.rate_max, 0.5 * joint.change_max, dt),
             )
-            for angle, least, most, speed, braking in zip(
-                theta, arm.theta_min, arm.theta_max, arm.dtheta_max, arm.ddtheta_max, strict=True
-            )
+            for angle, joint in zip(theta, joints, strict=True)
         ]
     )

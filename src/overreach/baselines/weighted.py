@@ -3,85 +3,91 @@
 from __future__ import annotations
 
 import math
-from math import cos, sin
-from typing import final
+from typing import Annotated, Any
 
-from overreach.arm.planar import forward, inverse, jacobian
-from overreach.baselines.common import NO_SOLUTION, shared
-from overreach.errors import SetupError
-from overreach.law.blend import step
-from overreach.law.workspace import Mount, Workspace
-from overreach.model.planar import PlanarRobot
-from overreach.types import Frame, Split
+from overreach.arm.chain import Chain
+from overreach.baselines.common import UNSOLVED, Rows, base_rows, commanded, planned
+from overreach.extras import require
+from overreach.law.body import Planner, WholeBody
+from overreach.model.model import Model
+from overreach.parameters import number
+from overreach.types import BaseTwist, HandTwist, Plan
 
-BASE_WEIGHT = 1.0
-"""How much dearer a rate of the base [m/s, rad/s] is than one of a joint [rad/s]. 1: the plain pseudo-inverse."""
 NEAR = 0.01
 """Below det M = NEAR (trace M)^2 the inverse is damped, the more the nearer to singular (Nakamura, Hanafusa 1986)."""
 
 
-@final
-class Weighted:
-    """min sum w_i q_i^2 subject to J q = u; see `weighted`."""
+class Weighted(WholeBody, frozen=True):
+    """Baseline: weighted minimum-norm pseudo-inverse of the true kinematics, closed form, damped when singular.
+
+    min sum w_i q_i^2 subject to J q = u, q = (v_b, w_b, joints), W = diag(base_weight, base_weight, 1, ...).
+    """
 
     name = "weighted"
-    frame = Frame.HAND
     closes_residual = False
+    base_weight: Annotated[float, number("weight of the base's rates", "", 0.1, 100.0, 0.1, above=0.0)] = 1.0
+    """How much dearer a rate of the base [m/s, rad/s] is than one of a joint [rad/s]. 1: the plain pseudo-inverse."""
 
-    def __init__(self, workspace: Workspace, mount: Mount, robot: PlanarRobot, base_weight: float) -> None:
-        if not (math.isfinite(base_weight) and base_weight > 0.0):
-            raise SetupError(f"base_weight must be a finite number > 0, got {base_weight:g}")
-        self.workspace = workspace
-        self.blend = step()
-        self.mount = mount
-        self._arm = robot.arm
-        self._cheap = 1.0 / base_weight
+    def planner(self, model: Model) -> Planner:
+        """Return q = W^-1 J^T M^-1 u, M = J W^-1 J^T (damped where it is nearly singular)."""
+        mount, rows, w = model.mount, model.arm.rows, 1.0 / self.base_weight
+        solve = _in_the_plane if rows == (0, 1) else _Rows(rows)
 
-    def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
-        """Return `split_joints` for the joints that put the hand at (l [m], psi [rad])."""
-        return self.split_joints(inverse(l, psi, *self._arm.links, self._arm.elbow), u_r, u_t)
+        def plan(chain: Chain, u: HandTwist, _base: BaseTwist) -> Plan:
+            base, arm = base_rows(chain, mount), chain.jacobian()
+            rates = solve(chain.l, base, arm, w, u)
+            if not math.isfinite(sum(rates)):
+                return UNSOLVED
+            return planned(rates, chain, base, u.u_r)
 
-    def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
-        """Return q = W^-1 J^T M^-1 u, M = J W^-1 J^T (damped where it is nearly singular).
+        return plan
 
-        q = (v_b, w_b, dtheta_1, dtheta_2), J of the true kinematics:
-        J = [[c, k_r, 0, j_l], [-sn, k_t, l, l j_psi]], W = diag(base, base, 1, 1).
-        """
-        a, b = self._arm.links
-        mount = self.mount
-        l, psi = forward(theta[0], theta[1], a, b)
-        c, sn = cos(psi + mount.yaw), sin(psi + mount.yaw)
-        k_r = mount.s_x * sn - mount.s_y * c
-        k_t = l + mount.s_x * c + mount.s_y * sn
-        j_l, j_psi = jacobian(theta[1], a, b)
-        w = self._cheap
-        m_rr = w * (c * c + k_r * k_r) + j_l * j_l
-        m_rt = w * (k_r * k_t - c * sn) + j_l * l * j_psi
-        m_tt = w * (sn * sn + k_t * k_t) + l * l * (1.0 + j_psi * j_psi)
+
+def _in_the_plane(l: float, base: Rows, arm: Rows, w: float, u: HandTwist) -> list[float]:
+    """Return the rates for the rows r and t: M is 2 x 2, and its inverse is written out."""
+    (c, k_r), (m_sn, k_t) = base[0], base[1]
+    u_r, u_t = u.u_r, u.u_t
+    m_rr = w * (c * c + k_r * k_r) + sum([j_l * j_l for j_l in arm[0]])
+    m_rt = w * (k_r * k_t + c * m_sn) + sum([j_l * l * j_psi for j_l, j_psi in zip(arm[0], arm[1], strict=True)])
+    m_tt = w * (m_sn * m_sn + k_t * k_t) + l * l * sum([j_psi * j_psi for j_psi in arm[1]])
+    det = m_rr * m_tt - m_rt * m_rt
+    trace = m_rr + m_tt
+    room = det / (NEAR * trace * trace)
+    if room < 1.0:
+        damping = NEAR * trace * (1.0 - room) * (1.0 - room)
+        m_rr += damping
+        m_tt += damping
         det = m_rr * m_tt - m_rt * m_rt
-        trace = m_rr + m_tt
-        room = det / (NEAR * trace * trace)
-        if room < 1.0:
-            damping = NEAR * trace * (1.0 - room) * (1.0 - room)
-            m_rr += damping
-            m_tt += damping
-            det = m_rr * m_tt - m_rt * m_rt
-        y_r = (m_tt * u_r - m_rt * u_t) / det
-        y_t = (m_rr * u_t - m_rt * u_r) / det
-        v_b = w * (c * y_r - sn * y_t)
-        w_b = w * (k_r * y_r + k_t * y_t)
-        dtheta_1 = l * y_t
-        dtheta_2 = j_l * y_r + l * j_psi * y_t
-        if not math.isfinite(v_b + w_b + dtheta_1 + dtheta_2):
-            return NO_SOLUTION
-        return shared(psi, mount, u_r, v_b, w_b, (dtheta_1, dtheta_2), j_l, j_psi)
+    y_r = (m_tt * u_r - m_rt * u_t) / det
+    y_t = (m_rr * u_t - m_rt * u_r) / det
+    return [
+        w * (c * y_r + m_sn * y_t),
+        w * (k_r * y_r + k_t * y_t),
+        *[j_l * y_r + l * j_psi * y_t for j_l, j_psi in zip(arm[0], arm[1], strict=True)],
+    ]
 
 
-def weighted(
-    workspace: Workspace | None = None,
-    mount: Mount | None = None,
-    robot: PlanarRobot | None = None,
-    base_weight: float = BASE_WEIGHT,
-) -> Weighted:
-    """Baseline: weighted minimum-norm pseudo-inverse of the true kinematics, closed form, damped when singular."""
-    return Weighted(workspace or Workspace(), mount or Mount(), robot or PlanarRobot(), base_weight)
+class _Rows:
+    """The same for an arm that has more rows than the plane's, by numpy."""
+
+    def __init__(self, rows: tuple[int, ...]) -> None:
+        self._numpy: Any = require("numpy", "qp", "the law weighted on an arm like this")
+        self._rows = list(rows)
+
+    def __call__(self, l: float, base: Rows, arm: Rows, w: float, u: HandTwist) -> list[float]:
+        numpy, rows = self._numpy, self._rows
+        J = numpy.hstack((numpy.array(base), numpy.array(arm)))
+        J[1, 2:] *= l  # from bearings to the tangent
+        J = J[rows]
+        cheap = numpy.ones(J.shape[1])
+        cheap[:2] = w
+        M = (J * cheap) @ J.T
+        # The damping of the plane, from its measure of nearness: det M against (trace M / n)^n.
+        n = len(rows)
+        trace = numpy.trace(M)
+        near = numpy.linalg.det(M) / (NEAR * (trace / n) ** n)
+        if near < 1.0:
+            M += numpy.eye(n) * NEAR * trace * (1.0 - near) ** 2
+        y = numpy.linalg.solve(M, numpy.array(commanded(u))[rows])
+        rates: list[float] = (cheap * (J.T @ y)).tolist()
+        return rates

@@ -16,9 +16,9 @@ from overreach.bench.measure import spread
 from overreach.bench.vectorised import numpy_step
 from overreach.clock import nanoseconds
 from overreach.fast.batch import IN, OUT, Array, compile_batch
-from overreach.law.blend import smoothstep, tanh
+from overreach.law.blend import Smoothstep, Tanh
 from overreach.law.laws import constants
-from overreach.model.planar import PlanarRobot
+from overreach.model.planar import planar
 
 SIZES = (100, 1_000, 10_000, 100_000, 1_000_000)
 HEADLINE = 1_000_000
@@ -67,11 +67,11 @@ def per_second(step: Callable[[Array, Array], None], states: Array, rates: Array
 
 def measure(rounds: int = 15, tell: Callable[[str], object] = lambda what: None) -> dict[str, Any]:
     """Return throughput [steps/s] by size, by threads and of numpy, and how memory grew while it was measured."""
-    robot, soft = PlanarRobot(), smoothstep()
-    limits, _ = constants(robot.workspace, soft, robot.mount)
+    robot, soft = planar(), Smoothstep()
+    limits, _ = constants(robot, soft)
     tell("compiling the batch")
     batch = compile_batch(robot, soft)
-    batch_tanh = compile_batch(robot, tanh())
+    batch_tanh = compile_batch(robot, Tanh())
 
     def by_numpy(states: Array, rates: Array) -> None:
         numpy_step(states, rates, limits, *robot.arm.links)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import final
 
-from overreach.control import HandController
-from overreach.law.laws import Law
+from overreach.control.controller import HandController
+from overreach.law.body import WholeBody
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.scenario import load_scenario
 from overreach.types import RobotState, Step
@@ -24,7 +24,7 @@ class Replay:
     cost less than a step does.
     """
 
-    def __init__(self, law: Law, count: int) -> None:
+    def __init__(self, law: WholeBody, count: int) -> None:
         robot = KinematicRobot()
         self.controller = HandController(robot.model, law)
         scenario = load_scenario("mixed")

@@ -10,7 +10,7 @@ from overreach.law.authority import BASE_GAIN, HUGE, Limits6
 
 
 def numpy_step(states: Array, rates: Array, limits: Limits6, a: float, b: float) -> None:
-    """Write the rates (4, n) for the states (6, n): `arm.step.planar_step`, smoothstep, shoulder at the base's centre.
+    """Write the rates (4, n) for the states (6, n): `fast.step.planar_step`, smoothstep, shoulder at the base's centre.
 
     Where the arm is almost straight or folded, its damping is applied as in `arm.planar.joint_rates`.
     """

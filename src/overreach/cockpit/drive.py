@@ -93,10 +93,10 @@ def robot_process(robot: str, rate: float) -> Iterator[tuple[str, subprocess.Pop
 
 def run_drive(robot: str, host: str, port: int | None, rate: float, browser: bool) -> None:
     """Run both halves until Ctrl-C or SIGTERM, or until one of them ends."""
-    from overreach.plugs import load_robot
+    from overreach.plugs import load_model
     from overreach.robot_side import check_rate
 
-    load_robot(robot)
+    load_model(robot)
     check_rate(rate)
     _exit_on_signals()
     with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate) as (endpoint, process):

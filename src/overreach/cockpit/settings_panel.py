@@ -10,9 +10,8 @@ from nicegui import ui
 
 from overreach.cockpit.relay import Relay
 from overreach.errors import OverreachError
-from overreach.law.blend import BLENDS
 from overreach.link.messages import Accepted, Refused, Settings
-from overreach.plugs import LAWS, names, takes
+from overreach.plugs import BLENDS, blends_in, law_names, law_plug, names
 from overreach.types import Frame
 
 THROTTLE_S = 0.1
@@ -33,7 +32,11 @@ class SettingsPanel:
             ui.html("<h2>Settings</h2>", sanitize=False)
             self._law = self._select("law", "Law", self._laws(self._shown.law))
             self._frame = self._toggle("frame", "Command frame", [frame.value for frame in Frame])
-            self._blend = self._toggle("blend", "Blend", list(BLENDS))
+            self._blend = self._toggle(
+                "blend",
+                "Blend",
+                names(BLENDS),
+            )
             self._speed = self._slider("speed_scale", "Speed", 0.05, 1.0, 0.05, "×")
             self._tanh = ui.element("div").classes("group")
             with self._tanh:
@@ -53,7 +56,7 @@ class SettingsPanel:
     @staticmethod
     def _laws(in_force: str) -> list[str]:
         """Return the laws to choose from: those installed here, and the one in force, which only the robot may have."""
-        return sorted({*names(LAWS), in_force})
+        return sorted({*law_names(), in_force})
 
     def _select(self, field: str, label: str, options: list[str]) -> ui.select:
         return ui.select(options, label=label, value=getattr(self._shown, field), on_change=self._handler(field)).props(
@@ -149,7 +152,7 @@ class SettingsPanel:
         self._length.value = {"min": settings.l_min, "max": settings.l_max}
         self._bearing.value = {"min": settings.psi_min, "max": settings.psi_max}
         try:
-            blending = "blend" in takes(settings.law)
+            blending = blends_in(law_plug(settings.law))
         except (OverreachError, ImportError):  # a law that only the robot's side has
             blending = True
         self._tanh.visible = settings.blend == "tanh" and blending

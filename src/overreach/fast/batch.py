@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from overreach.errors import SetupError
 from overreach.fast.robot import fixed_step
-from overreach.law.blend import Blend, smoothstep
-from overreach.model.planar import PlanarRobot
+from overreach.law.blend import Blend, Smoothstep
+from overreach.model.planar import PlanarRobot, planar
 
 Array = NDArray[np.float64]
 Batch = Callable[[Array, Array], None]
@@ -28,7 +28,7 @@ def compile_batch(robot: PlanarRobot | None = None, blend: Blend | None = None, 
 
     A column is a robot; rows as in `compile_step`. Raises SetupError for arrays of another shape or type.
     """
-    fixed = fixed_step(robot or PlanarRobot(), blend or smoothstep())
+    fixed = fixed_step(robot or planar(), blend or Smoothstep())
 
     def all_of_them(states: Array, rates: Array) -> None:
         for k in prange(states.shape[1]):  # where it is not compiled for threads, prange is range

@@ -7,13 +7,12 @@ from typing import Any
 
 from numba import float64, njit
 
-from overreach.arm.step import planar_step
 from overreach.fast.compiling import compiled
+from overreach.fast.step import planar_step
 from overreach.law import authority
-from overreach.law.blend import Blend, smoothstep
+from overreach.law.blend import Blend, Smoothstep
 from overreach.law.laws import constants
-from overreach.law.workspace import Mount, Workspace
-from overreach.model.planar import PlanarRobot
+from overreach.model.planar import PlanarRobot, planar
 
 Rates = tuple[float, float, float, float]
 
@@ -30,11 +29,11 @@ def entry(function: Any, arguments: int) -> Callable[..., Any]:
 
 
 def compile_law(
-    workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None
+    robot: PlanarRobot | None = None, blend: Blend | None = None
 ) -> Callable[[float, float, float, float], authority.Shares]:
     """Return the exact law, (l, psi, u_r, u_t) -> (mu, sigma, v_b, w_b, v_m, w_m, scale); see `law.authority.exact`."""
-    blend = blend or smoothstep()
-    limits, three = constants(workspace or Workspace(), blend, mount or Mount())
+    blend = blend or Smoothstep()
+    limits, three = constants(robot or planar(), blend)
     law, rise = compiled(authority.exact), compiled(blend.rise)
 
     def fixed(l: float, psi: float, u_r: float, u_t: float) -> Any:
@@ -46,11 +45,11 @@ def compile_law(
 def compile_step(
     robot: PlanarRobot | None = None, blend: Blend | None = None
 ) -> Callable[[float, float, float, float, float, float], Rates]:
-    """Return the full planar step with the exact law; see `arm.step.planar_step`.
+    """Return the full planar step with the exact law; see `fast.step.planar_step`.
 
     (theta_1, theta_2, theta_b, theta_e [rad], v_c [m/s], w_c [rad/s]) -> (v_b [m/s], w_b, dtheta_1, dtheta_2 [rad/s])
     """
-    fixed = fixed_step(robot or PlanarRobot(), blend or smoothstep())
+    fixed = fixed_step(robot or planar(), blend or Smoothstep())
 
     def one(theta_1: float, theta_2: float, theta_b: float, theta_e: float, v_c: float, w_c: float) -> Any:
         return fixed(theta_1, theta_2, theta_b, theta_e, v_c, w_c)
@@ -69,7 +68,7 @@ def empty_call() -> Callable[..., Rates]:
 
 def fixed_step(robot: PlanarRobot, blend: Blend) -> Any:
     """Return the step as a compiled function of six floats that other compiled functions can call."""
-    limits, mount = constants(robot.workspace, blend, robot.mount)
+    limits, mount = constants(robot, blend)
     a, b = robot.arm.links
     step, rise = compiled(planar_step), compiled(blend.rise)
 

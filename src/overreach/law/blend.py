@@ -6,11 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import isfinite
 from math import tanh as hyperbolic_tangent
+from typing import Annotated
 
-from overreach.errors import SetupError, UnknownNameError
-from overreach.types import Record
+from overreach.parameters import Parameters, number
 
 LN_99 = 4.59511985013459
 """ln 99: a tanh blend goes from 1 % to 99 % over ln(99) / alpha."""
@@ -41,64 +40,129 @@ def rise_smoothstep(e: float, q: float) -> float:
     return x * x * (3.0 - 2.0 * x)
 
 
-class Blend(Record, frozen=True):
-    """A blending function with its two width parameters, for length (k_l) and bearing (k_psi).
+class Blend(Parameters, frozen=True):
+    """Base of the blends: a frozen record of its widths, which gives `rise` and its width parameters.
 
-    width_l [m] and width_psi [rad] are the transition widths Q: 1 % to 99 % for tanh, the whole
-    support for smoothstep, 0 for step. Make one with `tanh`, `smoothstep` or `step`.
+    k_l, k_psi: what `rise` takes for length and bearing; width_l [m], width_psi [rad]: the transition widths Q, 1 % to
+    99 % for tanh, the whole support for smoothstep, 0 for step.
     """
 
-    name: str
-    rise: Rise
-    k_l: float
-    k_psi: float
-    width_l: float
-    width_psi: float
+    @property
+    def rise(self) -> Rise:
+        """The blending function."""
+        raise NotImplementedError
+
+    @property
+    def k_l(self) -> float:
+        """The width parameter of `rise` in length."""
+        raise NotImplementedError
+
+    @property
+    def k_psi(self) -> float:
+        """The width parameter of `rise` in bearing."""
+        raise NotImplementedError
+
+    @property
+    def width_l(self) -> float:
+        """Transition width in length [m]."""
+        return self.k_l
+
+    @property
+    def width_psi(self) -> float:
+        """Transition width in bearing [rad]."""
+        return self.k_psi
 
 
-def _positive(**values: float) -> None:
-    for name, value in values.items():
-        if not (isfinite(value) and value > 0.0):
-            raise SetupError(f"{name} must be a finite number > 0, got {value:g}")
+class Tanh(Blend, frozen=True):
+    """The paper's: smooth, but the arm never quite stops.
 
-
-def tanh(alpha: float = 50.0, beta: float = 50.0) -> Blend:
-    """Return the paper's blend; alpha [1/m], beta [1/rad], larger is narrower.
-
-    Its arm share never reaches 0: under a held command the EE creeps out of the workspace.
+    alpha [1/m], beta [1/rad], larger is narrower. Its arm share never reaches 0: under a held command the EE creeps out
+    of the workspace.
     """
-    _positive(alpha=alpha, beta=beta)
-    return Blend("tanh", rise_tanh, alpha, beta, LN_99 / alpha, LN_99 / beta)
+
+    name = "tanh"
+    alpha: Annotated[float, number("α  sharpness in l", "1/m", 5.0, 200.0, 1.0, above=0.0)] = 50.0
+    beta: Annotated[float, number("β  sharpness in ψ", "1/rad", 5.0, 200.0, 1.0, above=0.0)] = 50.0
+
+    @property
+    def rise(self) -> Rise:
+        """`rise_tanh`."""
+        return rise_tanh
+
+    @property
+    def k_l(self) -> float:
+        """Alpha."""
+        return self.alpha
+
+    @property
+    def k_psi(self) -> float:
+        """Beta."""
+        return self.beta
+
+    @property
+    def width_l(self) -> float:
+        """ln(99)/alpha [m]."""
+        return LN_99 / self.alpha
+
+    @property
+    def width_psi(self) -> float:
+        """ln(99)/beta [rad]."""
+        return LN_99 / self.beta
 
 
-def smoothstep(q_l: float = 0.1, q_psi: float = 0.1) -> Blend:
-    """Return the blend of compact support; q_l [m], q_psi [rad] are the full widths of its bands.
+class Smoothstep(Blend, frozen=True):
+    """Compact support: the arm ends at a hard limit.
 
-    [L_min - q_l/2, L_max + q_l/2] and [Psi_min - q_psi/2, Psi_max + q_psi/2] are forward invariant.
+    q_l [m], q_psi [rad] are the full widths of its bands: [L_min - q_l/2, L_max + q_l/2] and
+    [Psi_min - q_psi/2, Psi_max + q_psi/2] are forward invariant.
     """
-    _positive(q_l=q_l, q_psi=q_psi)
-    return Blend("smoothstep", rise_smoothstep, q_l, q_psi, q_l, q_psi)
+
+    name = "smoothstep"
+    q_l: Annotated[float, number("Q  width in l", "m", 0.01, 0.3, 0.01, above=0.0)] = 0.1
+    q_psi: Annotated[float, number("Q  width in ψ", "rad", 0.01, 0.6, 0.01, above=0.0)] = 0.1
+
+    @property
+    def rise(self) -> Rise:
+        """`rise_smoothstep`."""
+        return rise_smoothstep
+
+    @property
+    def k_l(self) -> float:
+        """q_l."""
+        return self.q_l
+
+    @property
+    def k_psi(self) -> float:
+        """q_psi."""
+        return self.q_psi
 
 
-def step() -> Blend:
-    """Return the hard switch (alpha = beta = infinity)."""
-    return Blend("step", rise_step, 1.0, 1.0, 0.0, 0.0)
+class Step(Blend, frozen=True):
+    """The hard switch: chatters at the limits (alpha = beta = infinity)."""
 
+    name = "step"
 
-def blend_from(name: str, alpha: float, beta: float, q_l: float, q_psi: float) -> Blend:
-    """Return the blend called `name`, with the parameters that are its own."""
-    makers = {
-        "tanh": lambda: tanh(alpha, beta),
-        "smoothstep": lambda: smoothstep(q_l, q_psi),
-        "step": step,
-    }
-    if name not in makers:
-        raise UnknownNameError("blend", name, makers)
-    return makers[name]()
+    @property
+    def rise(self) -> Rise:
+        """`rise_step`."""
+        return rise_step
 
+    @property
+    def k_l(self) -> float:
+        """Not looked at."""
+        return 1.0
 
-BLENDS = {
-    "tanh": "the paper's: smooth, but the arm never quite stops",
-    "smoothstep": "compact support: the arm ends at a hard limit",
-    "step": "the hard switch: chatters at the limits",
-}
+    @property
+    def k_psi(self) -> float:
+        """Not looked at."""
+        return 1.0
+
+    @property
+    def width_l(self) -> float:
+        """0 m."""
+        return 0.0
+
+    @property
+    def width_psi(self) -> float:
+        """0 rad."""
+        return 0.0

@@ -1,156 +1,94 @@
-"""The laws as plugs: the Protocol, and the makers `exact`, `paper` and `switch`."""
+"""The sharing laws as plugs: what a law is, and `Exact`, `Paper` and `Switch`."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from typing import Protocol, final, runtime_checkable
 
-from overreach.errors import LONGEST_NAME, WorkspaceError
+from overreach.arm.chain import Chain
 from overreach.law import authority
-from overreach.law.blend import Blend, smoothstep, step, tanh
-from overreach.law.workspace import Mount, Workspace
-from overreach.types import FLOATS, Frame, Split, Verdict
+from overreach.law.blend import Blend, Smoothstep, Step, Tanh
+from overreach.law.body import Planner, WholeBody
+from overreach.law.lead import lead
+from overreach.model.model import Model
+from overreach.types import BaseTwist, Frame, HandTwist, Plan, Split
+
+Share = Callable[[float, float, float, float], Split]
+"""(l [m], psi [rad], u_r, u_t [m/s]) -> shares of the EE's velocity, by base and arm. Pure; raises nothing; every
+number is finite for finite input with l > 0."""
 
 
-class Law(Protocol):
-    """Shares one EE velocity between base and arm. A pure function of its arguments."""
+class Law(WholeBody, frozen=True):
+    """Shares one planar EE velocity between base and arm: frozen parameters, which meet a robot in `bind`.
 
-    name: str
-    """The name under which it is chosen."""
-    frame: Frame
-    """The command frame that suits it, used unless another is asked for."""
-    closes_residual: bool
-    """Whether the arm is to make up for what the base does otherwise than asked (lag, slip, limits)."""
-    workspace: Workspace
-    blend: Blend
-    mount: Mount
-
-    def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
-        """Return the shares for the EE at (l [m], psi [rad]) commanded to (u_r, u_t) [m/s].
-
-        Every number is finite for finite input with l > 0; nothing is raised.
-        """
-        ...
-
-
-@runtime_checkable
-class JointLaw(Law, Protocol):
-    """A law that decides joint rates itself, and so wants to know the joints: a controller asks it so."""
-
-    def split_joints(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Split:
-        """Return the shares, joint rates among them, for the arm at joint angles theta [rad]; as `split` otherwise."""
-        ...
-
-
-class UnusableError(ValueError):
-    """A law's answer that cannot be used; says which part is what."""
-
-
-ANSWERS = (Verdict.MOVING, Verdict.NO_SOLUTION)
-"""What a law may say of its answer; the other verdicts are not a law's to give."""
-
-
-def checked(split: Split) -> Split:
-    """Return a law's answer as plain floats.
-
-    Raises UnusableError unless every number is finite, the scale in [0, 1] and the verdict one that a law may give.
+    One of your own names itself, its frame and whether it closes the residual, and has a `bind`.
     """
-    own = split.dtheta or ()
-    numbers = (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale, *own)
-    if not (math.isfinite(sum(map(abs, numbers))) and 0.0 <= split.scale <= 1.0):
-        for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
-            value = getattr(split, name)
-            if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
-                raise UnusableError(f"{name} = {value}")
-        raise UnusableError("rates too great to use")
-    if split.verdict not in ANSWERS:
-        raise UnusableError(f"the verdict {str(split.verdict)[:LONGEST_NAME]!r}")
-    if set(map(type, numbers)) == FLOATS:
-        return split
-    mu, sigma, v_b, w_b, v_m, w_m, scale, *own_rates = map(float, numbers)
-    dtheta = None if split.dtheta is None else tuple(own_rates)
-    return Split(mu, sigma, v_b, w_b, v_m, w_m, scale, split.verdict, dtheta)
+
+    def bind(self, model: Model) -> Share:
+        """Return the law for the workspace and mount of `model`."""
+        raise NotImplementedError
+
+    def planner(self, model: Model) -> Planner:
+        """Return a plan in which the arm finds its own rates; for a base that states a lag with shares taken ahead."""
+        share = self.bind(model)
+        lag, mount = model.base.lag, model.mount.three
+
+        def plan(chain: Chain, u: HandTwist, _base: BaseTwist) -> Plan:
+            return Plan(share(chain.l, chain.psi, u.u_r, u.u_t))
+
+        def plan_ahead(chain: Chain, u: HandTwist, base: BaseTwist) -> Plan:
+            return Plan(share(*lead(chain.l, chain.psi, u.u_r, u.u_t, base.v_b, base.w_b, lag, mount)))
+
+        return plan_ahead if lag > 0.0 and self.closes_residual else plan
 
 
-def constants(workspace: Workspace, blend: Blend, mount: Mount) -> tuple[authority.Limits6, authority.Mount3]:
+def constants(model: Model, blend: Blend) -> tuple[authority.Limits6, authority.Mount3]:
     """Return the numbers that the functions in `authority` take."""
-    limits = (workspace.l_min, workspace.l_max, workspace.psi_min, workspace.psi_max, blend.k_l, blend.k_psi)
-    return limits, (mount.s_x, mount.s_y, mount.yaw)
+    space = model.workspace
+    return (space.l_min, space.l_max, space.psi_min, space.psi_max, blend.k_l, blend.k_psi), model.mount.three
 
 
-def _check(workspace: Workspace, mount: Mount) -> None:
-    """Raise WorkspaceError where the EE could come over the base's turning centre."""
-    worst = workspace.l_min - math.hypot(mount.s_x, mount.s_y)
-    if worst <= 0.0:
-        # Only a shoulder behind the hand brings it over the turning centre: look at the whole sector.
-        steps = 64
-        span = workspace.psi_max - workspace.psi_min
-        for k in range(steps + 1):
-            psi_d = workspace.psi_min + span * k / steps + mount.yaw
-            if workspace.l_min + mount.s_x * math.cos(psi_d) + mount.s_y * math.sin(psi_d) <= 0.0:
-                raise WorkspaceError(
-                    f"with the shoulder at ({mount.s_x:g}, {mount.s_y:g}) m the hand comes over the base's "
-                    f"turning centre inside the workspace: choose l_min > {-worst + workspace.l_min:g} m"
-                )
+def bound(shares: Callable[..., authority.Shares], model: Model, blend: Blend) -> Share:
+    """Return one of the functions in `authority` with all that is known beforehand."""
+    rise = blend.rise
+    limits, mount = constants(model, blend)
+
+    def share(l: float, psi: float, u_r: float, u_t: float) -> Split:
+        return Split(*shares(l, psi, u_r, u_t, rise, limits, mount))
+
+    return share
 
 
-@final
-class SharingLaw:
-    """A law made of one of the functions in `authority`; see `exact`, `paper` and `switch`."""
-
-    def __init__(
-        self,
-        name: str,
-        frame: Frame,
-        closes_residual: bool,
-        shares: Callable[..., authority.Shares],
-        workspace: Workspace,
-        blend: Blend,
-        mount: Mount,
-    ) -> None:
-        self.name = name
-        self.frame = frame
-        self.closes_residual = closes_residual
-        self.workspace = workspace
-        self.blend = blend
-        self.mount = mount
-        self._shares = shares
-        self._rise = blend.rise
-        _check(workspace, mount)
-        self._limits, self._mount = constants(workspace, blend, mount)
-
-    def split(self, l: float, psi: float, u_r: float, u_t: float) -> Split:
-        """Return the shares; see `Law.split`."""
-        return Split(*self._shares(l, psi, u_r, u_t, self._rise, self._limits, self._mount))
-
-
-def exact(workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None) -> Law:
+class Exact(Law, frozen=True):
     """Ours: exact in true kinematics, the arm closes what the base leaves, the base lines up."""
-    return SharingLaw(
-        "exact",
-        Frame.HAND,
-        True,
-        authority.exact,
-        workspace or Workspace(),
-        blend or smoothstep(),
-        mount or Mount(),
-    )
+
+    name = "exact"
+    blend: Blend = Smoothstep()
+
+    def bind(self, model: Model) -> Share:
+        """Return `authority.exact` for `model`."""
+        return bound(authority.exact, model, self.blend)
 
 
-def paper(workspace: Workspace | None = None, blend: Blend | None = None, mount: Mount | None = None) -> Law:
+class Paper(Law, frozen=True):
     """Kwon et al. 2026, (14) to (16), to the letter: distorts the hand's motion by mu |v_c tan psi|."""
-    return SharingLaw(
-        "paper",
-        Frame.POLAR,
-        False,
-        authority.paper,
-        workspace or Workspace(),
-        blend or tanh(),
-        mount or Mount(),
-    )
+
+    name = "paper"
+    frame = Frame.POLAR
+    closes_residual = False
+    blend: Blend = Tanh()
+
+    def bind(self, model: Model) -> Share:
+        """Return `authority.paper` for `model`."""
+        return bound(authority.paper, model, self.blend)
 
 
-def switch(workspace: Workspace | None = None, mount: Mount | None = None) -> Law:
+class Switch(Law, frozen=True):
     """Kwon et al. 2026 without blending, (12) and (13): the hard switch."""
-    return SharingLaw("switch", Frame.POLAR, False, authority.paper, workspace or Workspace(), step(), mount or Mount())
+
+    name = "switch"
+    frame = Frame.POLAR
+    closes_residual = False
+
+    def bind(self, model: Model) -> Share:
+        """Return `authority.paper` with a step for `model`."""
+        return bound(authority.paper, model, Step())

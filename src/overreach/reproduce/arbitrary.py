@@ -7,8 +7,8 @@ from math import cos, sin
 
 from matplotlib.axes import Axes
 
-from overreach.law.blend import tanh
-from overreach.law.laws import exact, paper
+from overreach.law.blend import Tanh
+from overreach.law.laws import Exact, Paper
 from overreach.reproduce.lab import Lab, Section
 from overreach.reproduce.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
 from overreach.run.simulate import Run
@@ -16,7 +16,7 @@ from overreach.run.simulate import Run
 
 def section(lab: Lab) -> Section:
     """Run `mixed` with `paper` and `exact`, draw shares and errors side by side."""
-    runs = {"paper": lab.run("mixed", paper(blend=tanh())), "exact": lab.run("mixed", exact(blend=tanh()))}
+    runs = {"paper": lab.run("mixed", Paper(blend=Tanh())), "exact": lab.run("mixed", Exact(blend=Tanh()))}
     figure, axes = panels(4, 2, sharex=True, sharey="row", height=1.7)
     for (name, run), column in zip(runs.items(), axes.T, strict=True):
         _draw(run, column, name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from overreach.law.blend import LN_99, rise_smoothstep, rise_tanh
-from overreach.law.workspace import Workspace
+from overreach.model.planar import planar
 from overreach.reproduce.lab import Lab, Section
 from overreach.reproduce.look import ARM, BASE, HAND, MUTED, limit, panels
 
@@ -15,7 +15,7 @@ WIDTH = 0.1
 
 def section(lab: Lab) -> Section:
     """Draw mu(l) and sigma(psi) for three sharpnesses, both directions, and the compact blend."""
-    space = Workspace()
+    space = planar().workspace
     figure, axes = panels(2, 2, height=2.5)
     rows: list[tuple[float, ...]] = []
     widths = {}

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from overreach.law.blend import smoothstep, tanh
-from overreach.law.laws import Law, exact, paper, switch
+from overreach.law.blend import Smoothstep, Tanh
+from overreach.law.body import WholeBody
+from overreach.law.laws import Exact, Paper, Switch
 from overreach.reproduce.lab import Lab, Section, Table
 from overreach.reproduce.look import BASE, HAND, panels
 from overreach.run.metrics import total_variation
 from overreach.run.simulate import Run
 
-LAWS: tuple[tuple[str, str, Law], ...] = (
-    ("switch", "switch", switch()),
-    ("paper", "paper (tanh)", paper(blend=tanh())),
-    ("exact_tanh", "exact (tanh)", exact(blend=tanh())),
-    ("exact_smoothstep", "exact (smoothstep)", exact(blend=smoothstep())),
+LAWS: tuple[tuple[str, str, WholeBody], ...] = (
+    ("switch", "switch", Switch()),
+    ("paper", "paper (tanh)", Paper(blend=Tanh())),
+    ("exact_tanh", "exact (tanh)", Exact(blend=Tanh())),
+    ("exact_smoothstep", "exact (smoothstep)", Exact(blend=Smoothstep())),
 )
 SHOWN_S = (0.0, 4.0)
 SCENARIOS = {"dither": "trembling at the corner", "dither_pushed": "trembling while pushing outward"}

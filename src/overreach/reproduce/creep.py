@@ -6,16 +6,16 @@ from math import log, log1p
 
 import msgspec
 
-from overreach.law.blend import Blend, smoothstep, tanh
-from overreach.law.laws import exact
+from overreach.law.blend import Blend, Smoothstep, Tanh
+from overreach.law.laws import Exact
 from overreach.reproduce.lab import Lab, Section
 from overreach.reproduce.look import ARM, BASE, HAND, INK, STOP, legend, limit, panels, thin
 from overreach.run.scenario import load_scenario
 
 BLENDS: tuple[tuple[str, Blend, str], ...] = (
-    ("tanh_10", tanh(10.0, 10.0), HAND),
-    ("tanh_50", tanh(50.0, 50.0), BASE),
-    ("smoothstep", smoothstep(0.1, 0.1), ARM),
+    ("tanh_10", Tanh(10.0, 10.0), HAND),
+    ("tanh_50", Tanh(50.0, 50.0), BASE),
+    ("smoothstep", Smoothstep(0.1, 0.1), ARM),
 )
 
 
@@ -28,7 +28,7 @@ def section(lab: Lab) -> Section:
     found = {}
     for name, blend, colour in BLENDS:
         scenario = msgspec.structs.replace(held, blend=blend)
-        run = lab.run(scenario, exact(blend=blend), f"held_{name}")
+        run = lab.run(scenario, Exact(blend=blend), f"held_{name}")
         rows = [row for row in run.rows if row.t >= 0.1]
         t, l = [row.t for row in rows], [row.l for row in rows]
         label = f"tanh, α = {blend.k_l:g} 1/m" if blend.name == "tanh" else f"smoothstep, Q = {blend.width_l:g} m"

@@ -7,8 +7,9 @@ from math import hypot, tan
 import numpy as np
 
 from overreach.law.authority import ee_velocity
-from overreach.law.blend import tanh
-from overreach.law.laws import Law, exact, paper
+from overreach.law.blend import Tanh
+from overreach.law.laws import Exact, Paper, Share
+from overreach.model.planar import planar
 from overreach.reproduce.lab import Lab, Section
 from overreach.reproduce.look import ARM, BASE, INK, legend, limit, panels
 
@@ -17,22 +18,21 @@ BEYOND = 0.95
 LEVELS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3)
 
 
-def error(law: Law, psi: float, v_c: float) -> float:
+def error(share: Share, psi: float, v_c: float) -> float:
     """Return |true velocity - command| [m/s] of the hand, pushed outward at v_c [m/s], in rigid-body kinematics."""
-    split = law.split(BEYOND, psi, v_c, 0.0)
+    split = share(BEYOND, psi, v_c, 0.0)
     got = ee_velocity(BEYOND, psi, split.v_b, split.w_b, split.v_m, split.w_m, (0.0, 0.0, 0.0))
     return hypot(got[0] - v_c * split.scale, got[1])
 
 
 def section(lab: Lab) -> Section:
     """Map the error of `paper`; beside it a cut at 0.4 m/s with the formula and with `exact`."""
-    his, ours = paper(), exact(blend=tanh())
+    his, ours = Paper().bind(planar()), Exact(blend=Tanh()).bind(planar())
     psi, v_c = np.linspace(-0.7, 0.7, 71), np.linspace(0.0, 0.4, 41)
     field = np.array([[error(his, float(p), float(v)) for p in psi] for v in v_c])
     zero = max(error(ours, float(p), float(v)) for p in psi for v in v_c)
     formula = max(
-        abs(error(his, float(p), 0.4) - his.split(BEYOND, float(p), 0.4, 0.0).mu * abs(0.4 * tan(float(p))))
-        for p in psi
+        abs(error(his, float(p), 0.4) - his(BEYOND, float(p), 0.4, 0.0).mu * abs(0.4 * tan(float(p)))) for p in psi
     )
     rows = [(float(v), float(p), float(field[k][j])) for k, v in enumerate(v_c) for j, p in enumerate(psi)]
     lab.data("distortion", ("v_c", "psi", "error"), rows)

@@ -10,7 +10,7 @@ from typing import Any
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from overreach.law.laws import Law
+from overreach.law.body import WholeBody
 from overreach.reproduce import look
 from overreach.run.files import write_csv, write_table, write_text
 from overreach.run.scenario import Scenario, load_scenario
@@ -59,7 +59,7 @@ class Lab:
         for folder in ("figures", "data"):
             (out / folder).mkdir(parents=True, exist_ok=True)
 
-    def run(self, scenario: Scenario | str, law: Law | str, name: str | None = None) -> Run:
+    def run(self, scenario: Scenario | str, law: WholeBody | str, name: str | None = None) -> Run:
         """Return the run of a scenario, and leave it as data/NAME.csv (scenario_law by default)."""
         if isinstance(scenario, str):
             scenario = load_scenario(scenario)

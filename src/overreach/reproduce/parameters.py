@@ -2,41 +2,46 @@
 
 from __future__ import annotations
 
-from overreach.baselines import holistic, qp, weighted
+from overreach.baselines import holistic
+from overreach.baselines.qp import PaperQP
 from overreach.baselines.solver import SETTINGS
 from overreach.law import authority
-from overreach.law.blend import smoothstep, tanh
-from overreach.model.planar import load_planar
+from overreach.model.planar import planar
+from overreach.parameters import schema
+from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, names
 from overreach.reproduce.lab import Lab, Section, Table
 from overreach.run.scenario import builtin_scenarios, load_scenario
 
 PAPER, OURS = "the paper", "ours"
+WHOSE = {
+    ("smoothstep", "q_l"): "ours: not in the paper",
+    ("smoothstep", "q_psi"): "ours: not in the paper",
+    (PaperQP.name, "damping"): "ours: the paper gives 0 &lt; λ &lt; 1",
+    ("weighted", "base_weight"): "1 is the plain pseudo-inverse; others in section 4",
+}
+"""Where more is to be said of a parameter than that it is ours."""
 
 
 def rows() -> list[tuple[str, str, str]]:
     """Return (parameter, value with unit, whose it is), read from where the code has them."""
-    robot = load_planar()
+    robot = planar()
     space, arm, base = robot.workspace, robot.arm, robot.base
-    steep, soft = tanh(), smoothstep()
     dither = load_scenario("dither")
     found = [
         ("greatest command v_c, ω_c", "0.4 m/s, 0.4 rad/s", PAPER),
         ("workspace L_min, L_max", f"{space.l_min:g} to {space.l_max:g} m", OURS),
         ("workspace Ψ_min, Ψ_max", f"{space.psi_min:g} to {space.psi_max:g} rad", OURS),
-        ("tanh: α, β", f"{steep.k_l:g} 1/m, {steep.k_psi:g} 1/rad", OURS),
-        ("smoothstep: Q", f"{soft.width_l:g} m, {soft.width_psi:g} rad", "ours: not in the paper"),
+        *_described(),
         ("links of the arm", f"{arm.links[0]:g}, {arm.links[1]:g} m", OURS),
         ("shoulder on the base", f"({robot.mount.s_x:g}, {robot.mount.s_y:g}) m", "the paper: the frames coincide"),
         ("start l, ψ", f"{robot.start.l:g} m, {robot.start.psi:g} rad", OURS),
         ("base: v, ω at most", f"{base.v_max:g} m/s, {base.w_max:g} rad/s", OURS),
         ("joints: speed at most", f"{arm.dtheta_max[0]:g}, {arm.dtheta_max[1]:g} rad/s", OURS),
-        ("QP: damping λ", f"{qp.DAMPING:g}", "ours: the paper gives 0 &lt; λ &lt; 1"),
         (
             "QP: q_max", "the robot's speed limits above",
             "ours: the paper gives q_max = 0.01 without a unit; as a rate it could not follow 0.4 m/s",
         ),
         ("QP: tolerances", "; ".join(f"{name} {_plain(values)}" for name, values in SETTINGS.items() if values), "ours: all agree to 1e-4"),
-        ("weighted: weight of the base", f"{weighted.BASE_WEIGHT:g}", "the plain pseudo-inverse; others in section 4"),
         ("holistic: cost of rates, heading gain", f"{holistic.RATE_COST:g}, {holistic.HEADING_GAIN:g}", "Haviland et al. 2022, published example"),
         (
             "holistic: damper η, ρ_s, ρ_i",
@@ -60,6 +65,16 @@ def rows() -> list[tuple[str, str, str]]:
         whose = "ours, after the paper's four directions" if name in ("outward", "inward", "left", "right") else "ours"
         found.append((f"scenario <code>{name}</code>", text, whose))
     return found
+
+
+def _described() -> list[tuple[str, str, str]]:
+    """Return the parameters of blends and laws, as their own descriptions have them."""
+    plugs = [*map(blend_plug, names(BLENDS)), *map(law_plug, law_names())]
+    return [
+        (f"{plug.name}: {one.title}", one.shown, WHOSE.get((plug.name, one.name), OURS))
+        for plug in plugs
+        for one in schema(plug)
+    ]
 
 
 def _plain(values: dict[str, float]) -> str:

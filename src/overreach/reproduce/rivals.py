@@ -8,7 +8,7 @@ from math import hypot
 import msgspec
 from matplotlib.axes import Axes
 
-from overreach.baselines.weighted import weighted
+from overreach.baselines.weighted import Weighted
 from overreach.reproduce.lab import Lab, Section, Table
 from overreach.reproduce.look import ARM, BASE, HAND, limit, panels, thin
 from overreach.run.scenario import Scenario, load_scenario
@@ -133,7 +133,7 @@ def _net(run: Run) -> float:
 
 
 def _weighted(weight: float, mixed: Scenario, reach: Scenario) -> dict[str, float]:
-    law = weighted(base_weight=weight)
+    law = Weighted(base_weight=weight)
     one = simulate(mixed, law).summary
     return {key: getattr(one, key) for key in WEIGHT_COLUMNS if key != "reach"} | {
         "reach": simulate(reach, law).summary.base_travel
@@ -148,12 +148,13 @@ def _draw(run: Run, axes: Sequence[Axes], name: str) -> None:
     model, dt = run.scenario.model, run.scenario.dt
     rows = thin(list(zip(run.rows[:-1], run.rows[1:], strict=True)))
     t = [row.t for row, _ in rows]
-    base, arm = model.base, model.arm
+    base = model.base
+    one, two = [joint.rate_max for joint in model.arm.channels]
     lines = (
         ("$v_b$ [m/s]", [row.v_b for row, _ in rows], BASE, base.v_max),
         ("$ω_b$ [rad/s]", [row.w_b for row, _ in rows], BASE, base.w_max),
-        ("joint 1 [rad/s]", [(then.theta_1 - row.theta_1) / dt for row, then in rows], ARM, arm.dtheta_max[0]),
-        ("joint 2 [rad/s]", [(then.theta_2 - row.theta_2) / dt for row, then in rows], HAND, arm.dtheta_max[1]),
+        ("joint 1 [rad/s]", [(then.theta[0] - row.theta[0]) / dt for row, then in rows], ARM, one),
+        ("joint 2 [rad/s]", [(then.theta[1] - row.theta[1]) / dt for row, then in rows], HAND, two),
     )
     for axis, (label, values, colour, most) in zip(axes, lines, strict=True):
         axis.plot(t, values, color=colour, linewidth=1.2)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import pyplot as plt
 from scipy.special import wrightomega
 
-from overreach.law.laws import exact
+from overreach.law.laws import Exact
 from overreach.reproduce.lab import Lab, Picture, Section
 from overreach.reproduce.look import ARM, BASE, HAND, INK, MUTED, limit, thin
 from overreach.run.simulate import Run
@@ -109,7 +109,7 @@ def section(lab: Lab) -> Section:
     found = {}
     for name in NAMES:
         run = lab.run(name, "paper")
-        same = lab.run(name, exact(blend=run.scenario.blend))
+        same = lab.run(name, Exact(blend=run.scenario.blend))
         pictures.append(draw(lab, run))
         _, formula, was = closed_form(run)
         space = run.scenario.model.workspace

@@ -7,7 +7,7 @@ from math import atan2, cos, sin
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
-from overreach.law.laws import exact, paper
+from overreach.law.laws import Exact, Paper
 from overreach.reproduce.lab import Lab, Section
 from overreach.reproduce.look import ARM, BASE, HAND, MUTED, panels, thin
 from overreach.run.simulate import Row, Run
@@ -21,7 +21,7 @@ def section(lab: Lab) -> Section:
     """Drive forward and in reverse with both laws; draw the paths of hand and base."""
     runs = {
         (name, way): lab.run(scenario, law())
-        for name, law in (("paper", paper), ("exact", exact))
+        for name, law in (("paper", Paper), ("exact", Exact))
         for way, scenario in (("forward", "aside"), ("reverse", "aside_back"))
     }
     figure, axes = panels(2, 2, height=2.75)
@@ -105,8 +105,8 @@ def _robot(axis: Axes, run: Run, row: Row, label: str | None) -> None:
         )
     )  # fmt: skip
     axis.plot([row.x_b, row.x_b + c * long / 2], [row.y_b, row.y_b + s * long / 2], color=BASE, linewidth=0.8)
-    bearing = row.theta_b + row.theta_1
-    a = model.arm.links[0]
-    elbow = (row.x_b + a * cos(bearing), row.y_b + a * sin(bearing))
-    axis.plot([row.x_b, elbow[0], row.x_e], [row.y_b, elbow[1], row.y_e], color=ARM, linewidth=1.3, label=label)
+    links = [
+        (row.x_b + c * x - s * y, row.y_b + s * x + c * y) for x, y, _ in model.arm.at(row.theta, model.mount).points
+    ]
+    axis.plot(*zip(*links, strict=True), color=ARM, linewidth=1.3, label=label)
     axis.plot(row.x_e, row.y_e, "o", color=HAND, markersize=3.5)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import final
 
-from overreach.arm.planar import inverse
-from overreach.model.planar import PlanarRobot, load_planar
+from overreach.model.model import Model, channels, check_reach
+from overreach.model.planar import planar
 from overreach.robots.arc import arc
 from overreach.robots.imperfect import Actuators, Imperfection, Sensors
 from overreach.types import BaseTwist, RobotState
@@ -16,32 +16,32 @@ LONGEST_PIECE = 0.005
 
 @final
 class KinematicRobot:
-    """The planar robot in simulation. The base follows exact arcs; joints stop at their limits.
+    """Any model in simulation, by default the planar one. The base follows exact arcs; joints stop at their limits.
 
     `true` is the state without measurement noise; `read` gives what a sensor would show.
     """
 
     def __init__(
         self,
-        model: PlanarRobot | None = None,
+        model: Model | None = None,
         imperfection: Imperfection | None = None,
         l: float | None = None,
         psi: float | None = None,
         now: float = 0.0,
     ) -> None:
-        self.model = model or load_planar()
+        self.model = model or planar()
         self._imperfection = imperfection or Imperfection()
         self._l = self.model.start.l if l is None else l
         self._psi = self.model.start.psi if psi is None else psi
-        self.model.check_reach(self._l)
+        check_reach(self.model, self._l)
         self.restart(now)
 
     def restart(self, now: float) -> None:
         """Put the robot at its start, at rest."""
-        arm = self.model.arm
         self._pose = (0.0, 0.0, 0.0)
-        self._theta: tuple[float, ...] = inverse(self._l, self._psi, *arm.links, arm.elbow)
-        self._actuators = Actuators(4, self._imperfection)
+        self._joints = self.model.arm.channels
+        self._theta = self.model.arm.posture(self._l, self._psi)
+        self._actuators = Actuators(len(channels(self.model)), self._imperfection)
         self._now = now
         self._sensors = Sensors(self._imperfection, now)
         self._sensors.see(self.true)
@@ -64,7 +64,7 @@ class KinematicRobot:
 
     def stop(self, now: float) -> None:
         """Ask for standstill."""
-        self.write(BaseTwist(), (0.0, 0.0), now)
+        self.write(BaseTwist(), (0.0,) * len(self._joints), now)
 
     def _move_to(self, end: float) -> None:
         while self._now < end:
@@ -75,10 +75,11 @@ class KinematicRobot:
             dt = until - self._now
             v_b, w_b, *dtheta = self._actuators.advance(dt)
             self._pose = arc(*self._pose, v_b, w_b, dt)
-            arm = self.model.arm
             self._theta = tuple(
-                min(most, max(least, angle + rate * dt))
-                for angle, rate, least, most in zip(self._theta, dtheta, arm.theta_min, arm.theta_max, strict=True)
+                [
+                    min(joint.upper, max(joint.lower, angle + rate * dt))
+                    for angle, rate, joint in zip(self._theta, dtheta, self._joints, strict=True)
+                ]
             )
             self._now = until
             self._sensors.see(self.true)

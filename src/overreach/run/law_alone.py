@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import final
 
-from overreach.control import HandController
+from overreach.arm.chain import Chain
+from overreach.control.controller import HandController
 from overreach.types import Motion, RobotState, Step, Verdict
 
 
@@ -28,11 +29,11 @@ class LawAlone(HandController):
     def _base(self, v_b: float, w_b: float, dt: float) -> tuple[float, float]:
         return v_b, w_b
 
-    def _bounded(self, *_: object) -> None:
-        return None
+    def _bounded(self, joints: tuple[float, ...], *_: object) -> tuple[float, ...]:
+        return joints
 
-    def _last_word(self, step: Step, motion: Motion, dt: float) -> Step:
+    def _last_word(self, step: Step, chain: Chain, motion: Motion, dt: float) -> Step:
         if isfinite(sum(map(abs, step.rates))):
             return step
         self.guard.latch(f"The law {self.name!r} gave rates that are not finite: {step.rates}.")
-        return self._still(step.state)
+        return self._at_rest(chain, step.state)

@@ -13,10 +13,11 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from overreach.clock import nanoseconds
+from overreach.law.body import WholeBody
 from overreach.law.frame import FRAMES
-from overreach.law.laws import Law
-from overreach.law.workspace import Workspace
-from overreach.types import Frame
+from overreach.model.model import Model
+from overreach.model.workspace import Workspace
+from overreach.types import BaseTwist, Frame, HandTwist
 
 if TYPE_CHECKING:
     from overreach.run.simulate import Row
@@ -99,9 +100,9 @@ def beyond(rows: Sequence[Row], space: Workspace) -> tuple[list[float], list[flo
     )
 
 
-def manipulability_min(rows: Sequence[Row], links: tuple[float, float]) -> float:
-    """Return min a b |sin theta_2| [m^2], sqrt(det(J J^T)) of the two-link arm: 0 where it is straight or folded."""
-    return links[0] * links[1] * min(abs(sin(row.theta_2)) for row in rows)
+def manipulability_min(rows: Sequence[Row], model: Model) -> float:
+    """Return min sqrt(det(J J^T)) of the arm, in m^2 for one in the plane: 0 where it is singular."""
+    return min(model.arm.at(row.theta, model.mount).manipulability for row in rows)
 
 
 def saturated(rates: Iterable[tuple[float, ...]], most: tuple[float, ...]) -> float:
@@ -110,15 +111,16 @@ def saturated(rates: Iterable[tuple[float, ...]], most: tuple[float, ...]) -> fl
     return sum(held) / len(held)
 
 
-def cost_per_step(law: Law, frame: Frame, rows: Sequence[Row], yaw: float) -> float:
-    """Return the median time of one `law.split` [us], over the states and commands of a run, evenly picked.
+def cost_per_step(law: WholeBody, frame: Frame, rows: Sequence[Row], model: Model) -> float:
+    """Return the median time of one plan of `law` [us], over the states and commands of a run, evenly picked.
 
     Unlike the rest it is measured, not computed: another time, another number. `overreach bench` does it with care.
     """
-    meant, took = FRAMES[frame], []
+    meant, plan, took = FRAMES[frame], law.planner(model), []
     for row in rows[:: max(1, len(rows) // MOST_CALLS)]:
-        u_r, u_t = meant(row.v_c, row.w_c, row.l, row.psi + yaw, row.theta_b, row.theta_e)
+        u = HandTwist(*meant(row.v_c, row.w_c, row.l, row.psi + model.mount.yaw, row.theta_b, row.theta_e))
+        chain, base = model.arm.at(row.theta, model.mount), BaseTwist(row.v_b, row.w_b)
         start = nanoseconds()
-        law.split(row.l, row.psi, u_r, u_t)
+        plan(chain, u, base)
         took.append(nanoseconds() - start)
     return median(took) / 1000.0

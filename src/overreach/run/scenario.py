@@ -3,7 +3,8 @@
 [robot]      name = "planar", l = 0.65, psi = 0.0, shoulder = [0.0, 0.0], mount_yaw = 0.0,
              delay_s, lag_s, noise, seed (of the actuators and encoders; all 0)
 [workspace]  l_min, l_max, psi_min, psi_max
-[law]        blend = "tanh"|"smoothstep"|"step", alpha, beta (tanh), q_l, q_psi (smoothstep)
+[law]        blend = "tanh"|"smoothstep"|"step", and its parameters: alpha, beta (tanh), q_l, q_psi (smoothstep)
+[law.NAME]   parameters of the law NAME, where the scenario is run with it: [law.weighted] base_weight = 2.0
 [command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
 [dither]     l, psi, f: a tremor added to the command, as swings of the hand [m, rad] at f [Hz]
 [limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, so that the law is seen
@@ -22,14 +23,16 @@ from typing import Any
 
 import msgspec
 
+from overreach.arm.mount import Mount
 from overreach.errors import ScenarioError, UnknownNameError
 from overreach.gate.limits import Limits
-from overreach.law.blend import Blend, blend_from
-from overreach.law.workspace import Mount, Workspace
-from overreach.model.planar import PlanarRobot
-from overreach.plugs import load_robot
+from overreach.law.blend import Blend
+from overreach.model.model import Model, check_reach, check_workspace, placed
+from overreach.model.workspace import Workspace
+from overreach.plugs import load_model
 from overreach.robots.imperfect import Imperfection
 from overreach.run.command import FASTEST, Segment, read_commands
+from overreach.run.law_table import read_law
 from overreach.types import Command, Frame, Record
 
 LONGEST_S = 1e6
@@ -58,16 +61,6 @@ class WorkspaceTable(Record, frozen=True):
     l_max: float | None = None
     psi_min: float | None = None
     psi_max: float | None = None
-
-
-class LawTable(Record, frozen=True):
-    """The table [law]: the blend and its widths."""
-
-    blend: str = "tanh"
-    alpha: float = 50.0
-    beta: float = 50.0
-    q_l: float = 0.1
-    q_psi: float = 0.1
 
 
 class CommandTable(Record, frozen=True):
@@ -101,21 +94,22 @@ class Tables(Record, frozen=True):
     description: str = ""
     robot: RobotTable = RobotTable()
     workspace: WorkspaceTable = WorkspaceTable()
-    law: LawTable = LawTable()
+    law: dict[str, Any] = {}
     dither: Dither = Dither()
     limits: Limits | None = None
 
 
 class Scenario(Record, frozen=True):
-    """A scenario that can be run. Angles [rad], lengths [m], times [s]."""
+    """A scenario that can be run. Angles [rad], lengths [m], times [s]. parameters: of laws, by their names."""
 
     name: str
     description: str
-    model: PlanarRobot
+    model: Model
     imperfection: Imperfection
     l: float
     psi: float
     blend: Blend
+    parameters: dict[str, dict[str, Any]]
     frame: Frame | None
     duration: float
     dt: float
@@ -188,7 +182,6 @@ def parse_scenario(text: str, name: str = "scenario", folder: Path | None = None
 _TABLES: dict[str, type[msgspec.Struct]] = {
     "robot": RobotTable,
     "workspace": WorkspaceTable,
-    "law": LawTable,
     "command": CommandTable,
     "dither": Dither,
     "limits": Limits,
@@ -256,7 +249,7 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
     if any(later.t <= earlier.t for earlier, later in pairwise(segments)):
         raise ScenarioError(f"scenario {name!r}: the times t of the commands must increase from row to row")
 
-    given = load_robot(robot.name)
+    given = load_model(robot.name)
     own = given.workspace
     asked = tables.workspace
     workspace = Workspace(
@@ -267,21 +260,23 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
     )
     s_x, s_y = robot.shoulder or (given.mount.s_x, given.mount.s_y)
     mount = Mount(s_x, s_y, given.mount.yaw if robot.mount_yaw is None else robot.mount_yaw)
-    given.check_workspace(workspace)
+    model = placed(given, mount, workspace)
+    check_workspace(model, workspace)
     start_l = given.start.l if robot.l is None else robot.l
     start_psi = given.start.psi if robot.psi is None else robot.psi
-    given.check_reach(start_l)
+    check_reach(given, start_l)
     if abs(start_psi) > math.pi:
         raise ScenarioError(f"scenario {name!r}: robot.psi must be within +-pi rad, got {start_psi:g}")
-    law = tables.law
+    blend, parameters = read_law(tables.law, name)
     return Scenario(
         name=name,
         description=tables.description,
-        model=msgspec.structs.replace(given, workspace=workspace, mount=mount),
+        model=model,
         imperfection=Imperfection(robot.delay_s, robot.lag_s, robot.noise, robot.seed),
         l=start_l,
         psi=start_psi,
-        blend=blend_from(law.blend, law.alpha, law.beta, law.q_l, law.q_psi),
+        blend=blend,
+        parameters=parameters,
         frame=command.frame,
         duration=command.duration,
         dt=command.dt,

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import cos
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from overreach.arm.planar import forward, hand_in_world, polar_rates, wrap
-from overreach.control import HandController
+from overreach.arm.polar import hand_in_world
+from overreach.control.controller import HandController
 from overreach.gate.limits import limit_speed, slew
 from overreach.law.authority import ee_velocity
-from overreach.law.laws import Law
+from overreach.law.body import WholeBody
 from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.law_alone import LawAlone
@@ -20,7 +20,7 @@ from overreach.types import Step, Verdict
 
 
 class Row(NamedTuple):
-    """One line of the CSV: the state at t, and the rates applied from t to t + dt."""
+    """One line of the CSV: the state at t, and the rates applied from t to t + dt. theta: joints, a column each."""
 
     t: float
     v_c: float
@@ -40,8 +40,7 @@ class Row(NamedTuple):
     theta_b: float
     x_e: float
     y_e: float
-    theta_1: float
-    theta_2: float
+    theta: tuple[float, ...]
 
 
 class Run(NamedTuple):
@@ -60,22 +59,21 @@ class Run(NamedTuple):
     summary: Summary
 
 
-def law_of(scenario: Scenario, name: str) -> Law:
-    """Return the law called `name` for the robot, workspace and blend of `scenario`."""
-    model = scenario.model
-    return load_law(name, model.workspace, scenario.blend, model.mount, model)
+def law_of(scenario: Scenario, name: str, changes: Mapping[str, Any] | None = None) -> WholeBody:
+    """Return the law called `name` with the parameters and the blend of `scenario`, and `changes` of them."""
+    return load_law(name, {**scenario.parameters.get(name, {}), **(changes or {})}, scenario.blend)
 
 
-def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, float], Step]]:
+def steps(scenario: Scenario, law: WholeBody) -> Iterator[tuple[Row, tuple[float, float], Step]]:
     """Yield (row, EE velocity error (radial, tangential) [m/s], what was decided) step by step, in constant memory."""
     model = scenario.model
     limits = scenario.limits
     if limits is None:
-        controller: HandController = LawAlone(model, law, scenario.frame, whole_steps=True)
+        controller: HandController = LawAlone(model, law, scenario.frame)
     else:
-        controller = HandController(model, law, scenario.frame, whole_steps=True, ramp_s=limits.ramp_s)
+        controller = HandController(model, law, scenario.frame, ramp_s=limits.ramp_s)
     robot = KinematicRobot(model, scenario.imperfection, scenario.l, scenario.psi)
-    mount = (model.mount.s_x, model.mount.s_y, model.mount.yaw)
+    mount = model.mount.three
     dt = scenario.dt
     v_c = w_c = 0.0
     for k in range(scenario.steps):
@@ -90,16 +88,14 @@ def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, floa
         robot.write(done.twist, done.dtheta, t)
         # What was asked for and what really happens, both seen where the hand truly is.
         true = robot.true
-        theta_1, theta_2 = true.theta
-        l, psi = forward(theta_1, theta_2, *model.arm.links)
-        psi = wrap(psi)
+        chain = model.arm.at(true.theta, model.mount)
+        l, psi = chain.l, chain.psi
         theta_e = done.polar.theta_e
         split = done.split
         if scenario.imperfection.ideal:
             v_m, w_m = split.v_m, split.w_m
         else:
-            dtheta_1, dtheta_2 = true.dtheta
-            v_m, w_m = polar_rates(theta_2, dtheta_1, dtheta_2, *model.arm.links)
+            v_m, w_m, *_ = chain.moved(true.dtheta)
         u_r, u_t = controller.commanded(v_c, w_c, l, psi, true.theta_b, theta_e)
         e_r, e_t = ee_velocity(l, psi, true.v_b, true.w_b, v_m, w_m, mount)
         psi_d = psi + model.mount.yaw
@@ -108,14 +104,14 @@ def steps(scenario: Scenario, law: Law) -> Iterator[tuple[Row, tuple[float, floa
             Row(
                 t, v_c, w_c, l, psi, theta_e, split.mu, split.sigma,
                 true.v_b, true.v_b * cos(psi_d), v_m, true.w_b, w_m,
-                true.x_b, true.y_b, true.theta_b, x_e, y_e, *true.theta,
+                true.x_b, true.y_b, true.theta_b, x_e, y_e, true.theta,
             ),
             (e_r - u_r, e_t - u_t),
             done,
         )  # fmt: skip
 
 
-def simulate(scenario: Scenario | str, law: Law | str = "exact") -> Run:
+def simulate(scenario: Scenario | str, law: WholeBody | str = "exact") -> Run:
     """Run `scenario` (or the built-in of that name, or a TOML file) with `law`, or the law of that name.
 
     Raises SetupError when the scenario or the law cannot be used; a run itself raises nothing.

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from overreach.law.laws import Law
+from overreach.law.blend import Step
+from overreach.law.body import WholeBody
+from overreach.model.model import channels
 from overreach.run import metrics
 from overreach.types import Record, Verdict
 
@@ -18,10 +20,11 @@ class Summary(Record, frozen=True):
     """What happened; formulas and units are in `overreach.run.metrics`.
 
     ee_error_rms, ee_error_max [m/s]; ee_path_error [m]; hand_travel, base_travel [m]; base_turn [rad];
-    peak_v_b [m/s], peak_w_b [rad/s], peak_dtheta [rad/s], peak_ddtheta [rad/s^2] (of the worse joint);
+    peak_v_b [m/s], peak_w_b [rad/s], peak_dtheta [rad/s], peak_ddtheta [rad/s^2] (of the worst joint);
     variation_v_b [m/s], variation_w_b [rad/s]; saturated: part of the steps with a rate at its limit;
     authority_changes, flips_per_s [1/s]; outside_s [s], outside_l [m], outside_psi [rad]: time outside the workspace
-    and how far at most; manipulability_min [m^2]; psi_end [rad]: bearing at the end; verdicts: steps of each.
+    and how far at most; manipulability_min [m^2 in the plane]; psi_end [rad]: bearing at the end; verdicts: steps
+    of each.
     """
 
     scenario: str
@@ -54,13 +57,12 @@ class Summary(Record, frozen=True):
 
 
 def summarise(
-    scenario: Scenario, law: Law, rows: Sequence[Row], errors: metrics.Errors, verdicts: dict[Verdict, int]
+    scenario: Scenario, law: WholeBody, rows: Sequence[Row], errors: metrics.Errors, verdicts: dict[Verdict, int]
 ) -> Summary:
     """Return the summary of a run."""
     dt, model = scenario.dt, scenario.model
     v_b, w_b = [row.v_b for row in rows], [row.w_b for row in rows]
-    one = metrics.slopes([row.theta_1 for row in rows], dt)
-    two = metrics.slopes([row.theta_2 for row in rows], dt)
+    joints = [metrics.slopes(angles, dt) for angles in zip(*[row.theta for row in rows], strict=True)]
     beyond_l, beyond_psi = metrics.beyond(rows, model.workspace)
     changes = metrics.authority_changes(rows)
     duration = len(rows) * dt
@@ -68,7 +70,7 @@ def summarise(
         scenario=scenario.name,
         law=law.name,
         frame=scenario.frame or law.frame,
-        blend=law.blend.name,
+        blend=getattr(law, "blend", Step()).name,
         steps=len(rows),
         duration=duration,
         ee_error_rms=metrics.ee_error_rms(errors),
@@ -79,20 +81,20 @@ def summarise(
         base_turn=metrics.travel(w_b, dt),
         peak_v_b=metrics.peak(v_b),
         peak_w_b=metrics.peak(w_b),
-        peak_dtheta=max(metrics.peak(one), metrics.peak(two)),
-        peak_ddtheta=max(metrics.peak(metrics.slopes(one, dt)), metrics.peak(metrics.slopes(two, dt))),
+        peak_dtheta=max(map(metrics.peak, joints)),
+        peak_ddtheta=max(metrics.peak(metrics.slopes(rates, dt)) for rates in joints),
         variation_v_b=metrics.total_variation(v_b),
         variation_w_b=metrics.total_variation(w_b),
         saturated=metrics.saturated(
-            zip(v_b[:-1], w_b[:-1], one, two, strict=True) if one else [(v_b[0], w_b[0], 0.0, 0.0)],
-            (model.base.v_max, model.base.w_max, *model.arm.dtheta_max),
+            zip(v_b[:-1], w_b[:-1], *joints, strict=True) if joints[0] else [(v_b[0], w_b[0], *[0.0] * len(joints))],
+            tuple(channel.rate_max for channel in channels(model)),
         ),
         authority_changes=changes,
         flips_per_s=changes / duration,
         outside_s=sum(a > 0.0 or b > 0.0 for a, b in zip(beyond_l, beyond_psi, strict=True)) * dt,
         outside_l=max(beyond_l),
         outside_psi=max(beyond_psi),
-        manipulability_min=metrics.manipulability_min(rows, model.arm.links),
+        manipulability_min=metrics.manipulability_min(rows, model),
         psi_end=rows[-1].psi,
         verdicts={verdict.value: count for verdict, count in verdicts.items()},
     )

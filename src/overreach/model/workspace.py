@@ -15,10 +15,10 @@ class Workspace(Record, frozen=True):
     -pi <= Psi_min < Psi_max <= pi. Source: Kwon et al. 2026, Fig. 4.
     """
 
-    l_min: float = 0.45
-    l_max: float = 0.85
-    psi_min: float = -0.6
-    psi_max: float = 0.6
+    l_min: float
+    l_max: float
+    psi_min: float
+    psi_max: float
 
     def __post_init__(self) -> None:
         values = (self.l_min, self.l_max, self.psi_min, self.psi_max)
@@ -40,19 +40,3 @@ class Workspace(Record, frozen=True):
             self.l_min - margin_l <= l <= self.l_max + margin_l
             and self.psi_min - margin_psi <= psi <= self.psi_max + margin_psi
         )
-
-
-class Mount(Record, frozen=True):
-    """Where the arm sits on the base.
-
-    s_x, s_y: the shoulder in the base frame [m] (the paper: 0); yaw: heading of the arm's x axis in
-    the base frame [rad]. Raises WorkspaceError if a value is not finite.
-    """
-
-    s_x: float = 0.0
-    s_y: float = 0.0
-    yaw: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not all(math.isfinite(value) for value in (self.s_x, self.s_y, self.yaw)):
-            raise WorkspaceError(f"the arm's mount must be finite numbers, got {self}")

@@ -4,9 +4,11 @@ import math
 
 import pytest
 
+from overreach.arm.mount import Mount
 from overreach.errors import WorkspaceError
-from overreach.law.laws import exact
-from overreach.law.workspace import Mount, Workspace
+from overreach.model.planar import planar
+from overreach.model.workspace import Workspace
+from tests.strategies import WORKSPACE
 
 
 @pytest.mark.parametrize(
@@ -29,15 +31,15 @@ def test_impossible_workspaces_are_refused(limits: tuple[float, float, float, fl
 
 
 def test_hand_over_the_turning_centre_is_refused() -> None:
-    """A mount that lets the hand come over the base's turning centre is refused when the law is made."""
+    """A mount that lets the hand come over the base's turning centre is refused when the robot is described."""
     with pytest.raises(WorkspaceError, match="turning centre"):
-        exact(Workspace(0.45, 0.85), mount=Mount(-0.6, 0.0, 0.0))
-    exact(Workspace(0.45, 0.85), mount=Mount(0.6, 0.0, 0.0))
+        planar(mount=Mount(-0.6, 0.0, 0.0))
+    planar(mount=Mount(0.6, 0.0, 0.0))
 
 
 def test_contains() -> None:
     """The workspace contains its own edge and, widened, what lies just beyond."""
-    space = Workspace()
+    space = WORKSPACE
     assert space.contains(0.45, 0.6)
     assert not space.contains(0.86, 0.0)
     assert space.contains(0.86, 0.0, margin_l=0.02)

@@ -1,0 +1,106 @@
+"""What is asked of an arm, whatever it is made of: where its hand is, and which joint rates move it so.
+
+(l, psi): the hand about the shoulder, l [m] along the ground, psi [rad] from the arm's own x axis
+polar axes: r outward from the shoulder to the hand, t counter-clockwise, z up; in the base frame
+moved: (v_m = dl/dt, w_m = dpsi/dt, v_z, w_r, w_t, w_z): what the arm does to its hand, seen from the base
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from overreach.arm.mount import Mount
+from overreach.types import Channel, Verdict
+
+Rest = tuple[float, float, float, float]
+"""What the arm owes beyond the plane: v_z [m/s], then w_r, w_t, w_z [rad/s] in polar axes."""
+NO_REST: Rest = (0.0, 0.0, 0.0, 0.0)
+Moved = tuple[float, float, float, float, float, float]
+"""v_m [m/s], w_m [rad/s], v_z [m/s], w_r, w_t, w_z [rad/s]."""
+Point = tuple[float, float, float]
+
+
+class Chain(Protocol):
+    """An arm at its joints: forward kinematics done, once a tick."""
+
+    @property
+    def l(self) -> float:  # noqa: E743  the paper's symbol
+        """Length [m]: the hand's distance from the shoulder, along the ground."""
+        ...
+
+    @property
+    def psi(self) -> float:
+        """Bearing [rad] of the hand from the arm's x axis, in (-pi, pi]."""
+        ...
+
+    @property
+    def joints(self) -> tuple[float, ...]:
+        """The joints [rad, m], from the shoulder out."""
+        ...
+
+    @property
+    def hand(self) -> Point:
+        """The hand (x, y, z) [m] in the base frame."""
+        ...
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """The links as a line through (x, y, z) [m] in the base frame, from the shoulder to the hand."""
+        ...
+
+    @property
+    def manipulability(self) -> float:
+        """sqrt(det(J J^T)) of the hand's motion [m^n]: 0 where the arm is singular."""
+        ...
+
+    def towards_manipulability(self) -> tuple[float, ...]:
+        """Return the gradient of the manipulability by the joints."""
+        ...
+
+    def jacobian(self) -> tuple[tuple[float, ...], ...]:
+        """Return d(moved)/d(joint rates): six rows, of l, psi, z and the rotations about r, t, z; a column a joint."""
+        ...
+
+    def rates(self, v_m: float, w_m: float, rest: Rest, dt: float) -> tuple[tuple[float, ...], Verdict]:
+        """Return the joint rates that, held for `dt` [s], move the hand so, and MOVING or what keeps it from that.
+
+        The period ends exactly at (l + v_m dt, psi + w_m dt); with dt = 0 these are the rates of this moment. An arm
+        leaves out the rows that it does not have (`Arm.rows`). Always finite; near a singularity it gives way.
+        """
+        ...
+
+    def moved(self, rates: tuple[float, ...]) -> Moved:
+        """Return what the hand does at joint rates `rates`."""
+        ...
+
+
+class Arm(Protocol):
+    """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`)."""
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Each joint, from the shoulder out: limits of its position, speed and acceleration."""
+        ...
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """Which of the six rows of `moved` it can choose freely: (0, 1) for an arm in the plane."""
+        ...
+
+    @property
+    def branch(self) -> tuple[tuple[float, float], ...]:
+        """Per joint the least and greatest position [rad] in which the posture is kept: the elbow stays on its side."""
+        ...
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Least and greatest l [m]."""
+        ...
+
+    def at(self, joints: tuple[float, ...], mount: Mount) -> Chain:
+        """Return the arm at `joints`, mounted at `mount`."""
+        ...
+
+    def posture(self, l: float, psi: float) -> tuple[float, ...]:
+        """Return joints that put the hand at (l, psi), in its usual posture."""
+        ...

@@ -1,0 +1,135 @@
+"""A plug is a name and parameters: one schema, which TOML, command line, page, lists and reports read.
+
+class Mine(Law, frozen=True):
+name = "mine"
+gain: Annotated[float, number("gain of mine", "1/s", 0.0, 10.0)] = 2.0
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any, ClassVar, Self, get_args, get_type_hints
+
+import msgspec
+
+from overreach.errors import SetupError, UnknownNameError
+from overreach.types import Record
+
+Value = float | str
+"""What a parameter may be set to from outside."""
+STEPS = 100
+"""A slider whose step is not given has this many."""
+
+
+class Parameter(Record, frozen=True):
+    """What is known of one parameter.
+
+    title, unit: for people; default: its value where none is given; low, high, step: the range that is offered to
+    people; least: what a valid value must be above (-inf where any finite number is); choices: valid texts, none for a
+    number.
+    """
+
+    name: str
+    title: str
+    unit: str
+    default: Value
+    low: float = 0.0
+    high: float = 0.0
+    step: float = 0.0
+    least: float | None = None
+    choices: tuple[str, ...] = ()
+
+    @property
+    def shown(self) -> str:
+        """The default with its unit, for people."""
+        return self.default if isinstance(self.default, str) else f"{self.default:g} {self.unit}".rstrip()
+
+    def check(self, value: object) -> None:
+        """Raise SetupError unless `value` can be used."""
+        if self.choices:
+            if value not in self.choices:
+                raise UnknownNameError(self.title, str(value), self.choices)
+            return
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if math.isfinite(value) and (self.least is None or value > self.least):
+                return
+            got = f"{value:g}"
+        else:
+            got = repr(value)
+        bound = "" if self.least is None else f" > {self.least:g}"
+        raise SetupError(f"{self.name} must be a finite number{bound}, got {got}")
+
+    def read(self, text: Value) -> Value:
+        """Return the value that `text`, as a command line has it, means; raises SetupError where it means none."""
+        if self.choices or not isinstance(text, str):
+            return text
+        try:
+            return float(text)
+        except ValueError:
+            raise SetupError(f"{self.name} must be a number, got {text!r}") from None
+
+
+def number(
+    title: str, unit: str, low: float, high: float, step: float | None = None, above: float | None = None
+) -> msgspec.Meta:
+    """Describe a number: offered from `low` to `high` in `step`s; valid if finite and, where given, > `above`."""
+    step = (high - low) / STEPS if step is None else step
+    return msgspec.Meta(title=title, extra={"unit": unit, "low": low, "high": high, "step": step, "least": above})
+
+
+def choice(title: str, choices: Sequence[str]) -> msgspec.Meta:
+    """Describe a text that is one of `choices`."""
+    return msgspec.Meta(title=title, extra={"unit": "", "choices": tuple(choices)})
+
+
+class Parameters(Record, frozen=True):
+    """Base of every plug: frozen parameters, each described by `number` or `choice`. Raises SetupError for bad ones."""
+
+    name: ClassVar[str]
+    """The name under which it is chosen."""
+
+    def __post_init__(self) -> None:
+        for parameter in schema(type(self)):
+            parameter.check(getattr(self, parameter.name))
+
+    @classmethod
+    def made(cls, given: Mapping[str, Any], kind: str = "plug") -> Self:
+        """Return one with the parameters `given`; raises SetupError for an unknown name or a value of no use."""
+        known = {one.name: one for one in schema(cls)}
+        for key in given:
+            if key not in cls.__struct_fields__:
+                raise UnknownNameError(f"parameter of the {kind} {cls.name}", key, cls.__struct_fields__)
+        return cls(**{key: known[key].read(value) if key in known else value for key, value in given.items()})
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """The parameters that the schema describes, by name."""
+        return {one.name: getattr(self, one.name) for one in schema(type(self))}
+
+
+@cache
+def schema(plug: type[Parameters]) -> tuple[Parameter, ...]:
+    """Return what is known of the parameters of `plug`, in order; those without a description are for Python alone."""
+    found = []
+    hints = get_type_hints(plug, include_extras=True)
+    for field in msgspec.structs.fields(plug):
+        for meta in get_args(hints[field.name])[1:]:
+            if isinstance(meta, msgspec.Meta) and meta.extra:
+                found.append(Parameter(field.name, meta.title or field.name, default=field.default, **meta.extra))
+    return tuple(found)
+
+
+def assignments(texts: Sequence[str]) -> dict[str, str]:
+    """Return NAME=VALUE texts as a dictionary; raises SetupError for any other text."""
+    for text in texts:
+        if "=" not in text:
+            raise SetupError(f"--set takes NAME=VALUE, got {text!r}")
+    return dict(text.split("=", 1) for text in texts)
+
+
+def summary(plug: type) -> str:
+    """Return the first line of what a plug says of itself."""
+    lines = (plug.__doc__ or "").strip().splitlines()
+    return lines[0] if lines else ""
