@@ -47,7 +47,7 @@ def run() -> Iterator[Promise]:
             "full planar step, blending (tanh)": step_call(1.07, paper_blend, MOUNT),
             "full planar step, blending (tanh), shoulder off centre": step_call(1.07, paper_blend, OFFSET),
             "Exact().bind(model), record and all": partial(share, 0.86, 0.3, 0.3, 0.1),
-            "HandController.step, limits, guard and all": lambda: drive.step(*next(ticks)),
+            "Pilot.tick, gate, limits, guard, record and all": lambda: drive.tick(*next(ticks)),
         }
     )
     for name, values in took.items():

@@ -5,11 +5,13 @@ from math import degrees
 import overreach as ov
 
 robot = ov.KinematicRobot(psi=0.4)
-hand = ov.HandController(robot.model, ov.Exact())
+pilot = ov.Pilot(robot.model, ov.Exact())
+pilot.ask(ov.ArmRequest(operator=1), now=0.0)
 dt = 1 / 200
 for k in range(2000):
     now = k * dt
-    step = hand.step(robot.read(now), v_c=0.4, w_c=0.0, dt=dt)
-    robot.write(step.twist, step.dtheta, now)
+    command = ov.Command(operator=1, seq=k + 1, grip=1, held=True, twist=ov.Twist(v_x=0.4), frame=ov.Frame.HAND)
+    tick = pilot.tick(robot.read(now), command, now, dt)
+    robot.write(tick.base, tick.joints, tick.gripper, now, now + 2 * dt)
 state = robot.read(2000 * dt)
 print(f"base at ({state.x_b:.2f}, {state.y_b:.2f}) m, heading {degrees(state.theta_b):.1f} deg")

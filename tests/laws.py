@@ -16,7 +16,7 @@ from overreach.law.laws import Exact, Law, Paper, Share, Switch
 from overreach.model.model import Model
 from overreach.model.planar import planar
 from overreach.model.workspace import Workspace
-from overreach.types import BaseTwist, HandTwist, Plan, Split
+from overreach.types import HandTwist, Plan, Split, Twist
 from tests.strategies import WORKSPACE
 
 
@@ -37,7 +37,7 @@ class Bound:
 
     def plan(self, theta: tuple[float, ...], u_r: float, u_t: float) -> Plan:
         """Return the whole plan with the arm at joints theta [rad]."""
-        plan: Plan = self.planner(self.model.arm.at(theta, self.model.mount), HandTwist(u_r, u_t), BaseTwist())
+        plan: Plan = self.planner(self.model.arm.at(theta, self.model.mount), HandTwist(u_r, u_t), Twist())
         return plan
 
 
@@ -91,7 +91,7 @@ class Given(Law, frozen=True):
     def planner(self, model: Model) -> Planner:
         """Return what takes a whole plan, too, for an answer."""
 
-        def plan(chain: Chain, u: HandTwist, base: BaseTwist) -> Plan:
+        def plan(chain: Chain, u: HandTwist, base: Twist) -> Plan:
             answer = self.share(chain.l, chain.psi, u.u_r, u.u_t)
             return answer if isinstance(answer, Plan) else Plan(answer)
 

@@ -16,9 +16,10 @@ from contextlib import contextmanager
 import psutil
 
 from overreach.link.endpoint import free_port
-from overreach.link.messages import Accepted, Arm, State
+from overreach.link.messages import Accepted, State
 from overreach.link.operator_end import OperatorEnd
-from overreach.types import Stick
+from overreach.requests import ArmRequest
+from tests.said import said
 
 GENEROUS_S = 20.0
 """Deadline for anything that should take a second: two busy cores must not fail a test."""
@@ -97,7 +98,7 @@ class Observer:
     def speed(self, state: State | None = None) -> float:
         """Return the greatest of the four rates' sizes."""
         s = state or self.now
-        return max(abs(s.v_b), abs(s.w_b), abs(s.v_m), abs(s.w_m))
+        return max(abs(s.base.v_x), abs(s.base.w_z), abs(s.v_m), abs(s.w_m))
 
     def stop_time(self, since: float) -> float:
         """Wait until the robot stands still; return how long after `since` it did, by the robot's clock."""
@@ -131,12 +132,12 @@ class Driver:
         self.grip = 0
 
     def arm(self) -> None:
-        assert self.link.request(Arm(self.operator)) == Accepted()
+        assert self.link.request(ArmRequest(self.operator)) == Accepted()
         self.grip += 1
 
     def send(self, v_c: float = 0.4, w_c: float = 0.0, held: bool = True) -> None:
         self.seq += 1
-        self.link.send(Stick(self.operator, self.seq, self.grip, held, v_c, w_c))
+        self.link.send(said(self.operator, self.seq, self.grip, held, v_c, w_c))
 
     def drive(self, seconds: float, v_c: float = 0.4, w_c: float = 0.0) -> None:
         end = time.monotonic() + seconds

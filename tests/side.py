@@ -1,4 +1,4 @@
-"""Gate, controller and robot as the loop puts them together, without a wire: for tests by the million ticks."""
+"""Pilot and robot as the loop puts them together, without a wire: for tests by the million ticks."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
-from overreach.control.controller import HandController
-from overreach.gate.gate import Gate
+from overreach.control.pilot import Pilot
 from overreach.law.body import WholeBody
-from overreach.law.laws import Exact
 from overreach.model.model import Model
+from overreach.requests import ArmRequest, ResetRequest
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import RobotState, Step, Stick
+from overreach.types import Decision, RobotState
+from tests.said import said
 
 ME = 11
 MOST = (0.6, 2.0, 3.0, 3.0)
@@ -38,10 +38,9 @@ class Side:
     ) -> None:
         self.dt = dt
         self.now = start
-        self.gate = Gate()
         self.robot = KinematicRobot(model, imperfection, now=start)
-        law = law or Exact()
-        self.controller = HandController(self.robot.model, law, ramp_s=self.gate.limits.ramp_s)
+        self.pilot = Pilot(self.robot.model, law)
+        self.gate, self.controller = self.pilot.gate, self.pilot.controller
         self.altered = altered
         self.seq = self.grip = 0
         self.stick = (0.0, 0.0)
@@ -51,30 +50,26 @@ class Side:
         """Number of the tick of the first fault."""
 
     def arm(self) -> None:
-        self.gate.arm(ME, self.grip, self.now)
+        self.pilot.ask(ArmRequest(ME, self.grip), self.now)
         self.grip += 1
         self.held = True
 
     def reset(self) -> None:
-        self.gate.latch.reset()
-        self.controller.reset()
+        self.pilot.ask(ResetRequest(), self.now)
 
-    def tick(self) -> Step:
+    def tick(self) -> Decision:
         self.seq += 1
-        self.gate.accept(Stick(ME, self.seq, self.grip, self.held, *self.stick), self.now)
-        gated = self.gate.tick(self.now, self.dt)
         state = self.altered(self.robot.read(self.now))
-        step = self.controller.step(state, gated.v_c, gated.w_c, self.dt, self.now, gated.motion)
-        self.robot.write(step.twist, step.dtheta, self.now)
-        if self.controller.guard.fault:
-            self.gate.latch.fail(self.controller.guard.fault)
-            if self.faulted_at is None:
-                self.faulted_at = len(self.written)
-        self.written.append(step.rates)
+        command = said(ME, self.seq, self.grip, self.held, *self.stick)
+        tick = self.pilot.tick(state, command, self.now, self.dt)
+        self.robot.write(tick.base, tick.joints, None, self.now, self.now + self.dt)
+        if tick.decided.fault and self.faulted_at is None:
+            self.faulted_at = len(self.written)
+        self.written.append(tick.decided.rates)
         self.now += self.dt
-        return step
+        return tick.decided
 
-    def drive(self, seconds: float, v_c: float = 0.4, w_c: float = 0.0) -> Step:
+    def drive(self, seconds: float, v_c: float = 0.4, w_c: float = 0.0) -> Decision:
         self.stick = (v_c, w_c)
         for _ in range(round(seconds / self.dt)):
             step = self.tick()

@@ -2,21 +2,31 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from itertools import pairwise
-from typing import Any, cast
+from typing import Any
 
+import msgspec
 import pytest
 
 from overreach.clock import SteppedClock
-from overreach.law.body import NO_SOLUTION
+from overreach.errors import SetupError
+from overreach.law.body import NO_SOLUTION, Planner
+from overreach.law.laws import Law
 from overreach.link.endpoint import free_port
-from overreach.link.messages import Refused, Restart, Settings, State
+from overreach.link.messages import Accepted, Answer, Choice, ConfigureRequest, Refused, Settings, State
 from overreach.link.robot_end import RobotEnd
-from overreach.loop import Loop
+from overreach.model.model import Model
 from overreach.model.planar import planar
+from overreach.model.workspace import Workspace
+from overreach.requests import RestartRequest
+from overreach.robot_side.loop import Loop
+from overreach.robot_side.settings import Built, build
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import BaseTwist, Frame, RobotState, Split, Stick, Verdict
+from overreach.types import BaseTwist, RobotState, Split
+from overreach.verdicts import Verdict
 from tests.laws import Given, exact
+from tests.said import said
 
 PERIOD = 0.005
 
@@ -26,10 +36,9 @@ def test_an_overrun_is_counted_and_never_made_up_for(late: float) -> None:
     """After a stall the loop leaves out what it has missed: no two ticks in one period, all on the beat."""
     start = 100.0
     clock = SteppedClock(start)
-    model = planar()
-    link = RobotEnd(f"tcp/127.0.0.1:{free_port()}")
+    link = RobotEnd(f"tcp/127.0.0.1:{free_port()}", "planar")
     try:
-        loop = Loop(model, KinematicRobot(model, now=start), link, clock, 1.0 / PERIOD)
+        loop = Loop(KinematicRobot(now=start), link, clock, 1.0 / PERIOD)
         ticks: list[float] = []
         whole = loop.tick
 
@@ -56,6 +65,7 @@ class Driver:
 
     def __init__(self, now: float) -> None:
         self.robot = KinematicRobot(now=now)
+        self.model, self.simulated = self.robot.model, True
         self.written: list[tuple[float, ...]] = []
         self.stopped = 0
         self.unreadable: Exception | None = None
@@ -66,15 +76,21 @@ class Driver:
             raise self.unreadable
         return self.robot.read(now)
 
-    def write(self, twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
+    def write(
+        self, base: BaseTwist, joints: tuple[float, ...], gripper: float | None, now: float, deadline: float
+    ) -> None:
         if self.unwritable:
             raise self.unwritable
-        self.written.append((twist.v_b, twist.w_b, *dtheta))
-        self.robot.write(twist, dtheta, now)
+        assert deadline > now
+        self.written.append((base.v_x, base.w_z, *joints))
+        self.robot.write(base, joints, gripper, now, deadline)
 
     def stop(self, now: float) -> None:
         self.stopped += 1
         self.robot.stop(now)
+
+    def restart(self, now: float) -> None:
+        self.robot.restart(now)
 
 
 class Bench:
@@ -83,14 +99,13 @@ class Bench:
     def __init__(self, link: RobotEnd) -> None:
         self.clock = SteppedClock(100.0)
         self.driver = Driver(100.0)
-        model = self.driver.robot.model
-        self.loop = Loop(model, cast(Any, self.driver), link, self.clock, 1.0 / PERIOD)
+        self.loop = Loop(self.driver, link, self.clock, 1.0 / PERIOD)
         self.seq = 0
-        self.loop.gate.arm(7, 0, self.clock.now())
+        self.loop.pilot.gate.arm(7, 0, self.clock.now())
 
     def push(self) -> None:
         self.seq += 1
-        self.loop.gate.accept(Stick(7, self.seq, 1, True, 0.4, 0.0), self.clock.now())
+        self.loop.pilot.gate.accept(said(7, self.seq, 1, True, 0.4, 0.0), self.clock.now())
 
     def drive(self, ticks: int, at: Callable[[int], object] = lambda k: None) -> None:
         """Run for `ticks`, with the act `at` before each."""
@@ -117,7 +132,7 @@ class Bench:
 
 @pytest.fixture
 def bench() -> Iterator[Bench]:
-    link = RobotEnd(f"tcp/127.0.0.1:{free_port()}")
+    link = RobotEnd(f"tcp/127.0.0.1:{free_port()}", "planar")
     try:
         yield Bench(link)
     finally:
@@ -164,17 +179,17 @@ def test_a_robot_that_cannot_be_read_is_a_fault(bench: Bench, error: Exception) 
     def broken(k: int) -> None:
         bench.driver.unreadable = error if 300 <= k < 400 else None
         if k == 390:
-            assert bench.loop.gate.latch.fault == f"The robot could not be read: {type(error).__name__}: {error}."
+            assert bench.loop.pilot.gate.latch.fault == f"The robot could not be read: {type(error).__name__}: {error}."
             assert bench.driver.written[-1] == (0.0, 0.0, 0.0, 0.0)
-            assert bench.loop.gate.tick(bench.clock.now(), PERIOD).verdict is Verdict.FAULT
+            assert bench.loop.pilot.gate.tick(bench.clock.now(), PERIOD).verdict is Verdict.FAULT
         if k == 410:
-            bench.loop.gate.latch.reset()
-            bench.loop.controller.reset()
-            assert bench.loop.gate.arm(7, 0, bench.clock.now()) is None
+            bench.loop.pilot.gate.latch.reset()
+            bench.loop.pilot.controller.reset()
+            assert bench.loop.pilot.gate.arm(7, 0, bench.clock.now()) is None
 
     bench.drive(500, broken)
     bench.check()
-    assert bench.loop.gate.latch.fault == ""
+    assert bench.loop.pilot.gate.latch.fault == ""
 
 
 def test_a_robot_that_cannot_be_written_to_is_a_fault(bench: Bench) -> None:
@@ -183,7 +198,7 @@ def test_a_robot_that_cannot_be_written_to_is_a_fault(bench: Bench) -> None:
     def broken(k: int) -> None:
         bench.driver.unwritable = OSError("cable") if 300 <= k < 303 else None
         if k == 302:
-            assert bench.loop.gate.latch.fault == "The robot could not be written to: OSError: cable."
+            assert bench.loop.pilot.gate.latch.fault == "The robot could not be written to: OSError: cable."
 
     bench.drive(400, broken)
     assert max(rates[0] for rates in bench.driver.written) > 0.3
@@ -204,29 +219,28 @@ def test_a_law_that_is_slow_three_times_is_a_fault(bench: Bench, slow: int, faul
             bench.clock.t += 1.01 * PERIOD
         return law.split(*case)
 
-    bench.loop.controller.configure(Given(share, "slow"))
+    bench.loop.pilot.controller.configure(Given(share, "slow"))
     bench.drive(300)
     assert bench.loop.overruns > 0
-    assert (bench.loop.gate.latch.fault == "The law 'slow' takes 5 ms; a period has 5 ms.") is fault
+    assert (bench.loop.pilot.gate.latch.fault == "The law 'slow' takes 5 ms; a period has 5 ms.") is fault
 
 
 def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of what gate and law say the weightier is told: NO_SOLUTION over SPEED, STOPPED over that, with its look."""
     states: list[State] = []
     monkeypatch.setattr(bench.loop._link, "publish", states.append)
-    bench.loop.controller.configure(Given(lambda *_: NO_SOLUTION, "unsolved"))
+    bench.loop.pilot.controller.configure(Given(lambda *_: NO_SOLUTION, "unsolved"))
 
     def too_fast(k: int) -> None:
         bench.seq += 1
-        bench.loop.gate.accept(Stick(7, bench.seq, 1, True, 0.8, 0.0), bench.clock.now())
+        bench.loop.pilot.gate.accept(said(7, bench.seq, 1, True, 0.8, 0.0), bench.clock.now())
         if k == 150:
-            bench.loop.gate.latch.stop()
+            bench.loop.pilot.gate.latch.stop()
 
     bench.push = lambda: None  # type: ignore[method-assign]  # another operator
     bench.drive(300, too_fast)
     told = [(state.verdict, state.look, state.sentence) for state in states]
-    said = dict.fromkeys(told)
-    assert list(said) == [
+    assert list(dict.fromkeys(told)) == [
         (verdict.value, verdict.look, verdict.sentence)
         for verdict in (Verdict.NO_SOLUTION, Verdict.STOPPED, Verdict.ENDING)
     ]
@@ -246,13 +260,13 @@ def test_a_slow_law_does_not_stretch_a_stop(bench: Bench, every: int, takes: flo
             bench.clock.t += takes
         return law.split(*case)
 
-    bench.loop.controller.configure(Given(share, "slow"))
+    bench.loop.pilot.controller.configure(Given(share, "slow"))
 
     def stop(k: int) -> None:
         nonlocal stopped_at, still_at
         if k == 300:
             stopped_at = bench.clock.now()
-            bench.loop.gate.latch.stop()
+            bench.loop.pilot.gate.latch.stop()
         if stopped_at and not still_at and not any(bench.driver.written[-1]):
             still_at = bench.clock.now()
 
@@ -266,30 +280,66 @@ def test_the_end_makes_up_for_nothing(bench: Bench) -> None:
     at: list[float] = []
     write = bench.driver.write
 
-    def held_up(twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
-        write(twist, dtheta, now)
+    def held_up(*arguments: Any) -> None:
+        write(*arguments)
         at.append(bench.clock.now())
         if len(at) == 305:
             bench.clock.t += 0.1
 
-    bench.driver.write = held_up  # type: ignore[method-assign]  # the real one, and a note of when it was
+    bench.driver.write = held_up  # type: ignore[assignment,method-assign]  # the real one, and a note of when it was
     bench.drive(300)
     bench.check()
     assert all(later - earlier >= 0.999 * PERIOD for earlier, later in pairwise(at[:-1]))
 
 
-def test_settings_are_used_all_or_none(bench: Bench) -> None:
-    """A law that cannot be used leaves law, frame and speed as they were."""
+class Half(Law, frozen=True):
+    """A law that can be made and not be used."""
+
+    name = "half"
+
+    def planner(self, model: Model) -> Planner:
+        raise ZeroDivisionError("a plug-in's own")
+
+
+def test_settings_are_used_all_or_none(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A law that cannot be used leaves law, workspace and speed as they were, and is told."""
+    loop, pilot = bench.loop, bench.loop.pilot
+    answers: list[Answer] = []
+    before = (pilot.controller.law, pilot.model, pilot.gate.speed_scale, loop.settings)
+    wanted = msgspec.structs.replace(loop.settings, law=Choice("exact"), speed_scale=0.3)
+    other = planar(workspace=Workspace(0.5, 0.8, -0.5, 0.5))
+    done: Future[Built] = Future()
+    done.set_result(Built(wanted, Half(), other))
+    monkeypatch.setattr(loop._builder, "begin", lambda *_: done)
+    loop._begin(ConfigureRequest(wanted), answers.append)
+    loop.tick(bench.clock.now(), PERIOD)
+    assert answers == [Refused("Fault: the robot side met ZeroDivisionError: a plug-in's own.")]
+    assert (pilot.controller.law, pilot.model, pilot.gate.speed_scale, loop.settings) == before
+
+
+def test_settings_are_made_beside_the_loop(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While settings are made ready the loop goes on with those in force; further ones meanwhile are refused."""
     loop = bench.loop
-    before = (loop.controller.law, loop.controller.name, loop.gate.speed_scale)
+    answers: list[Answer] = []
+    begun: list[Settings] = []
+    going: Future[Built] = Future()
 
-    class Half:
-        name, frame, closes_residual, workspace, blend, mount = "half", Frame.WORLD, True, None, None, None
+    def begin(settings: Settings, model: Model) -> Future[Built]:
+        begun.append(settings)
+        return going
 
-    loop._law = lambda settings: cast(Any, Half())  # type: ignore[method-assign]
-    with pytest.raises(AttributeError):
-        loop._configure(Settings(speed_scale=0.3))
-    assert (loop.controller.law, loop.controller.name, loop.gate.speed_scale) == before
+    monkeypatch.setattr(loop._builder, "begin", begin)
+    wanted = msgspec.structs.replace(loop.settings, workspace=Workspace(0.5, 0.8, -0.5, 0.5), speed_scale=0.3)
+    loop._begin(ConfigureRequest(wanted), answers.append)
+    with pytest.raises(SetupError, match="being made ready"):
+        loop._begin(ConfigureRequest(wanted), answers.append)
+    bench.drive(20)
+    assert (begun, answers) == ([wanted], [])
+    assert loop.pilot.gate.speed_scale == 1.0
+    going.set_result(build(wanted, loop._model))
+    loop.tick(bench.clock.now(), PERIOD)
+    assert answers == [Accepted()]
+    assert (loop.pilot.gate.speed_scale, loop.pilot.model.workspace) == (0.3, wanted.workspace)
 
 
 def test_at_rest_is_when_nothing_is_written(bench: Bench) -> None:
@@ -298,11 +348,11 @@ def test_at_rest_is_when_nothing_is_written(bench: Bench) -> None:
     def let_go(k: int) -> None:
         loop = bench.loop
         if k == 300:
-            loop.controller.guard.latch("why")
+            loop.pilot.controller.guard.latch("why")
         if k > 300:
-            assert loop.resting is not any(loop.controller.guard.written) or not loop.gate.resting
-        if k > 302 and any(loop.controller.guard.written):
-            assert isinstance(loop._carry_out(Restart(), bench.clock.now()), Refused)
+            assert loop.pilot.resting is not any(loop.pilot.controller.guard.written) or not loop.pilot.gate.resting
+        if k > 302 and any(loop.pilot.controller.guard.written):
+            assert isinstance(loop._carry_out(RestartRequest(), bench.clock.now()), Refused)
 
     bench.drive(400, let_go)
     bench.check()

@@ -10,9 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from overreach.link.messages import Accepted, Refused
 from overreach.parameters import schema
 from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, names
+from overreach.requests import ResetRequest, RestartRequest, StopRequest
 from tests.plugin import install
+from tests.processes import Driver, until
+from tests.processes import robot as robot_side
 
 
 def ask(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -63,3 +67,113 @@ def test_every_parameter_is_described() -> None:
             one.check(one.default)
             assert one.choices or one.low < one.high
         assert set(plug().values) == {one.name for one in schema(plug)}  # it can be made as it is
+
+
+BLEND = '''
+from typing import Annotated
+from overreach.law.blend import Blend
+from overreach.parameters import number
+
+def _rise(e, k):
+    return min(1.0, max(0.0, 0.5 + e / k))
+
+class Ramp(Blend, frozen=True):
+    """A straight rise: continuous, with corners."""
+    name = "ramp"
+    run: Annotated[float, number("run of the ramp", "m, rad", 0.01, 0.5, above=0.0)] = 0.2
+
+    @property
+    def rise(self): return _rise
+    @property
+    def k_l(self): return self.run
+    @property
+    def k_psi(self): return self.run
+'''
+BODY = '''
+from typing import Annotated
+from overreach.law.body import WholeBody
+from overreach.parameters import number
+from overreach.types import Plan, Split
+
+class Driver(WholeBody, frozen=True):
+    """The base does it all."""
+    name = "driver"
+    closes_residual = False
+    part: Annotated[float, number("part of the speed", "", 0.0, 1.0)] = 1.0
+
+    def planner(self, model):
+        still = (0.0,) * len(model.arm.channels)
+        return lambda chain, u, base: Plan(Split(1.0, 1.0, self.part * u.u_r, 0.0, 0.0, 0.0), still)
+'''
+ROBOT = '''
+from overreach.robots.kinematic import KinematicRobot
+
+class _Mine:
+    """A driver: here of a simulation, as a stand-in for wires."""
+    simulated = False
+
+    def __init__(self, now):
+        self._robot = KinematicRobot(now=now)
+        self.model = self._robot.model
+
+    def read(self, now): return self._robot.read(now)
+    def write(self, base, joints, gripper, now, deadline): self._robot.write(base, joints, gripper, now, deadline)
+    def stop(self, now): self._robot.stop(now)
+    def restart(self, now): raise RuntimeError("a real robot is not put back")
+
+def mine(now):
+    """The robot next door."""
+    return _Mine(now)
+'''
+
+
+def run(env: dict[str, str], *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "overreach", *arguments]
+    return subprocess.run(command, env=env, capture_output=True, text=True, check=False, timeout=60)
+
+
+def test_a_blend_is_one_file_and_one_entry_point(tmp_path: Path) -> None:
+    """A blend of somebody else's is listed, chosen by a scenario with its own parameter, and used."""
+    env = install(tmp_path, "blends_of_mine", BLEND, "overreach.blends")
+    listed = run(env, "laws").stdout
+    assert re.search(r"ramp +A straight rise.*\n +run = 0.2 m, rad +run of the ramp", listed), listed
+    scenario = tmp_path / "held.toml"
+    body = "[command]\nduration = 6.0\nsegments = [{t = 0.0, v_c = 0.4, w_c = 0.0}]\n"
+    outside = []
+    for run_ in (0.2, 0.1):
+        scenario.write_text(f'[law]\nblend = "ramp"\nrun = {run_}\n{body}')
+        done = run(env, "simulate", str(scenario), "--json")
+        assert done.returncode == 0, done.stderr
+        summary = json.loads(done.stdout)
+        assert summary["blend"] == "ramp"
+        outside.append(summary["outside_l"])
+    assert outside == pytest.approx([0.1, 0.05], abs=1e-3)
+
+
+def test_a_whole_body_is_one_file_and_one_entry_point(tmp_path: Path) -> None:
+    """Something that plans all rates itself is listed and chosen as a law is, with its parameter."""
+    env = install(tmp_path, "bodies_of_mine", BODY, "overreach.bodies")
+    assert re.search(r"driver +The base does it all.\n +part = 1 +part of the speed", run(env, "laws").stdout)
+    travel = []
+    for part in ("1", "0.5"):
+        done = run(env, "simulate", "outward", "--law", "driver", "--set", f"part={part}", "--json")
+        assert done.returncode == 0, done.stderr
+        travel.append(json.loads(done.stdout)["base_travel"])
+    assert travel[1] == pytest.approx(0.5 * travel[0], rel=1e-6)
+    assert travel[0] > 1.0
+
+
+def test_a_robot_is_one_file_and_one_entry_point(tmp_path: Path) -> None:
+    """A driver of somebody else's is listed, driven over the wire, told as real, and never put back to its start."""
+    env = install(tmp_path, "robots_of_mine", ROBOT, "overreach.robots")
+    assert re.search(r"mine +The robot next door.", run(env, "robots").stdout)
+    with robot_side("mine", env=env) as (_, _, observer):
+        assert not observer.welcome.simulated
+        driver = Driver(observer.link)
+        driver.arm()
+        driver.drive(1.0)
+        assert observer.speed() > 0.2
+        assert observer.link.request(StopRequest()) == Accepted()
+        until(lambda: observer.speed() == 0.0, what="rest")
+        assert observer.link.request(ResetRequest()) == Accepted()
+        assert observer.link.request(RestartRequest()) == Refused("A real robot is not put back.")

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from overreach.arm.mount import Mount
-    from overreach.control.controller import HandController
+    from overreach.control.pilot import Pilot, replay
+    from overreach.control.tick import Tick
     from overreach.errors import OverreachError, SetupError
     from overreach.gate.gate import Gate
     from overreach.gate.limits import Limits
@@ -20,16 +21,20 @@ if TYPE_CHECKING:
     from overreach.law.laws import Exact, Law, Paper, Switch
     from overreach.model.planar import PlanarRobot, planar
     from overreach.model.workspace import Workspace
+    from overreach.requests import ArmRequest
     from overreach.robots.base import Robot
     from overreach.robots.kinematic import KinematicRobot
     from overreach.run.scenario import load_scenario
     from overreach.run.simulate import simulate
-    from overreach.types import BaseTwist, Frame, RobotState, Split, Verdict
+    from overreach.types import BaseTwist, Command, Frame, Pose, RobotState, Split, Twist
+from overreach.verdicts import Verdict
 
 __version__ = "0.1.0"
 
 _HOMES = {
-    "HandController": "control.controller",
+    "Pilot": "control.pilot",
+    "replay": "control.pilot",
+    "Tick": "control.tick",
     "OverreachError": "errors",
     "SetupError": "errors",
     "simulate": "run.simulate",
@@ -49,29 +54,36 @@ _HOMES = {
     "Workspace": "model.workspace",
     "PlanarRobot": "model.planar",
     "planar": "model.planar",
+    "ArmRequest": "requests",
     "Robot": "robots.base",
     "KinematicRobot": "robots.kinematic",
     "BaseTwist": "types",
+    "Command": "types",
+    "Pose": "types",
+    "Twist": "types",
     "Frame": "types",
     "RobotState": "types",
     "Split": "types",
-    "Verdict": "types",
+    "Verdict": "verdicts",
 }
 
 __all__ = [
+    "ArmRequest",
     "BaseTwist",
     "Blend",
+    "Command",
     "Exact",
     "Frame",
     "Gate",
-    "HandController",
     "KinematicRobot",
     "Law",
     "Limits",
     "Mount",
     "OverreachError",
     "Paper",
+    "Pilot",
     "PlanarRobot",
+    "Pose",
     "Robot",
     "RobotState",
     "SetupError",
@@ -80,12 +92,15 @@ __all__ = [
     "Step",
     "Switch",
     "Tanh",
+    "Tick",
+    "Twist",
     "Verdict",
     "WholeBody",
     "Workspace",
     "__version__",
     "load_scenario",
     "planar",
+    "replay",
     "simulate",
 ]
 

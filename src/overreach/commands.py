@@ -21,6 +21,8 @@ def drive(
     host: str = "127.0.0.1",
     rate: float = 200.0,
     browser: bool = True,
+    law: str = "exact",
+    set: tuple[str, ...] = (),
 ) -> None:
     """Start a simulated robot and the page to drive it with; open a browser where there is one.
 
@@ -30,10 +32,12 @@ def drive(
         host: Address the page is served at. Anyone who can reach it can drive the robot.
         rate: Rate of the control loop [Hz], 50 to 1000.
         browser: Whether to open a browser.
+        law: Name of the law it starts with (see `overreach laws`).
+        set: Parameters of the law, NAME=VALUE (see `overreach laws`).
     """
     from overreach.cockpit.drive import run_drive
 
-    run_drive(robot, host, port, rate, browser)
+    run_drive(robot, host, port, rate, browser, law, set)
 
 
 @app.command
@@ -41,6 +45,9 @@ def robot(
     robot: Annotated[str, tyro.conf.Positional] = "planar",
     listen: str = "tcp/127.0.0.1:7460",
     rate: float = 200.0,
+    name: str = "",
+    law: str = "exact",
+    set: tuple[str, ...] = (),
     parent: int | None = None,
 ) -> None:
     """Run the robot side: loop, gate, law and robot. A cockpit connects to it.
@@ -49,16 +56,22 @@ def robot(
         robot: Name of the robot (see `overreach robots`).
         listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
         rate: Rate of the control loop [Hz], 50 to 1000.
+        name: What it is called in the network, by default as the robot: two robots need two names.
+        law: Name of the law it starts with (see `overreach laws`).
+        set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         parent: End when this process, which started this one, ends.
     """
-    from overreach.robot_side import run_robot
+    from overreach.link.messages import Choice
+    from overreach.parameters import assignments
+    from overreach.robot_side.process import run_robot
 
-    run_robot(robot, listen, rate, parent)
+    run_robot(robot, listen, rate, parent, name, Choice(law, dict(assignments(set))))
 
 
 @app.command
 def cockpit(
     connect: str = "tcp/127.0.0.1:7460",
+    robot: str = "",
     port: int | None = None,
     host: str = "127.0.0.1",
     browser: bool = True,
@@ -67,13 +80,14 @@ def cockpit(
 
     Args:
         connect: Endpoint of the robot side, HOST:PORT or tcp/HOST:PORT.
+        robot: Name of the robot in the network, where there are several.
         port: Port of the page; by default 8420, or a free one where that is taken.
         host: Address the page is served at. Anyone who can reach it can drive the robot.
         browser: Whether to open a browser.
     """
     from overreach.cockpit.drive import run_cockpit
 
-    run_cockpit(connect, host, port, browser)
+    run_cockpit(connect, host, port, browser, robot)
 
 
 @app.command
@@ -165,8 +179,9 @@ def laws() -> None:
 def robots() -> None:
     """List the robots."""
     from overreach.plugs import MODELS, summaries
+    from overreach.robots.load import ROBOTS
 
-    _list("robots", summaries(MODELS))
+    _list("robots", summaries(MODELS, ROBOTS))
 
 
 @app.command

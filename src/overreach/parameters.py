@@ -96,7 +96,10 @@ class Parameters(Record, frozen=True):
 
     @classmethod
     def made(cls, given: Mapping[str, Any], kind: str = "plug") -> Self:
-        """Return one with the parameters `given`; raises SetupError for an unknown name or a value of no use."""
+        """Return one with the parameters `given`; raises SetupError for an unknown name or a value of no use.
+
+        Numbers may be given as texts, as a command line has them.
+        """
         known = {one.name: one for one in schema(cls)}
         for key in given:
             if key not in cls.__struct_fields__:

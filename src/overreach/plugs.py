@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
@@ -14,7 +13,6 @@ from overreach.law.body import WholeBody
 from overreach.law.laws import Law
 from overreach.model.model import Model
 from overreach.parameters import Parameters, summary
-from overreach.types import Record
 
 LAWS = "overreach.laws"
 """Entry points to subclasses of `overreach.law.laws.Law`."""
@@ -25,16 +23,12 @@ BLENDS = "overreach.blends"
 MODELS = "overreach.models"
 """Entry points to makers of a description: () -> Model."""
 
+USUAL = "planar"
+"""The robot that is taken where none is named."""
+
 KINDS: dict[str, tuple[str, type[Parameters]]] = {
     LAWS: ("law", Law), BODIES: ("law", WholeBody), BLENDS: ("blend", Blend)
 }  # fmt: skip
-
-
-class Choice(Record, frozen=True):
-    """A plug by its name, with those of its parameters that are not the usual ones."""
-
-    name: str
-    parameters: dict[str, Any] = {}
 
 
 @cache
@@ -46,6 +40,11 @@ def _points(group: str) -> dict[str, EntryPoint]:
 def names(*groups: str) -> list[str]:
     """Return the names in entry-point groups, sorted."""
     return sorted({name for group in groups for name in _points(group)})
+
+
+def point(group: str, name: str) -> EntryPoint:
+    """Return an entry point by its name."""
+    return _points(group)[name]
 
 
 def law_names() -> list[str]:
@@ -91,12 +90,6 @@ def usable(names_: Sequence[str], plug: Callable[[str], type[Parameters]]) -> di
         except Exception as error:  # a plug-in may raise anything when it is imported
             found[name] = str(error) if isinstance(error, SetupError) else told(error)
     return found
-
-
-def loaded(name: str) -> bool:
-    """Say whether the law called `name` is in memory: to load another may take a second (it may import numpy)."""
-    points = _points(LAWS) | _points(BODIES)
-    return name in points and points[name].module in sys.modules
 
 
 def blends_in(plug: type[Parameters]) -> bool:

@@ -12,6 +12,8 @@ import math
 
 import msgspec
 
+from overreach.verdicts import Verdict
+
 FLOATS = {float}
 
 
@@ -26,66 +28,6 @@ class Frame(enum.StrEnum):
     POLAR = "polar"
     BASE = "base"
     WORLD = "world"
-
-
-class Motion(enum.Enum):
-    """What the gate says of motion in one tick.
-
-    ALLOWED: the operator moves the hand; RAMPING: nobody does, and the command is on its way to zero;
-    NONE: the command is zero, and zero is what is written.
-    """
-
-    ALLOWED = enum.auto()
-    RAMPING = enum.auto()
-    NONE = enum.auto()
-
-
-class Verdict(enum.StrEnum):
-    """What became of a command in one tick, weightiest first: the one table of them.
-
-    Each has a value, a word for a label, a sentence (what to do or know), and a look for the page: stop, down, warn,
-    ready or go. `severity` counts down the table: 0 is the weightiest.
-    """
-
-    word: str
-    sentence: str
-    look: str
-    severity: int
-
-    def __new__(cls, value: str, word: str, sentence: str, look: str) -> Verdict:
-        """Make a member whose value is `value`."""
-        member = str.__new__(cls, value)
-        member._value_ = value
-        member.word = word
-        member.sentence = sentence
-        member.look = look
-        member.severity = len(cls.__members__)
-        return member
-
-    ENDING = "ending", "Ending", "The robot side was told to end: the robot comes to rest.", "stop"
-    FAULT = "fault", "Fault", "Press Reset, then Arm.", "stop"
-    STOPPED = "stopped", "Stopped", "Press Reset, then Arm.", "stop"
-    DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad.", "down"
-    LOST = "lost", "Link lost", "No command for 1 s. Let go and press again.", "warn"
-    REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again.", "warn"
-    STALE = "stale", "Link slow", "No command for 200 ms: slowing down.", "warn"
-    NOT_FINITE = "not_finite", "Refused", "A command held a value that is not finite.", "warn"
-    OTHER_OPERATOR = "other_operator", "Refused", "Another operator has armed the robot.", "warn"
-    OUT_OF_ORDER = "out_of_order", "Refused", "An old or repeated command came.", "warn"
-    NO_SOLUTION = "no_solution", "No solution", "The law's solver found no answer: the robot is to stand still.", "warn"
-    RELEASED = "released", "Ready", "Hold the pad to move the hand.", "ready"
-    JOINT_LIMIT = "joint_limit", "Scaled", "A joint is near its limit: the whole command is scaled.", "warn"
-    OUT_OF_REACH = "out_of_reach", "Out of reach", "The arm is at the end of its reach.", "warn"
-    SINGULAR = "singular", "Damped", "The arm is almost straight or folded: it gives way there.", "warn"
-    BESIDE = "beside", "Scaled", "The hand is beside the base, where driving cannot help it.", "warn"
-    SPEED = "speed", "Scaled", "Speed limit: the whole command is scaled.", "warn"
-    ACCELERATION = "acceleration", "Moving", "Acceleration limit: the whole command is ramped.", "go"
-    MOVING = "moving", "Moving", "The hand moves as commanded.", "go"
-
-
-def weightier(one: Verdict, other: Verdict) -> Verdict:
-    """Return which of two verdicts is to be told: the one that stands higher in the table."""
-    return one if one.severity <= other.severity else other
 
 
 class Channel(Record, frozen=True):
@@ -108,30 +50,72 @@ class Channel(Record, frozen=True):
     dead_band: float = 0.0
 
 
-class Command(Record, frozen=True):
-    """What the operator asks of the hand.
+class Twist(Record, frozen=True, forbid_unknown_fields=True):
+    """A rigid body's velocity: v_x, v_y, v_z [m/s], w_x, w_y, w_z [rad/s]; units never depend on the frame."""
 
-    In the frames `hand` and `polar`: v_c [m/s] along the hand's heading or outward, w_c [rad/s]
-    about the shoulder. In `base` and `world`: v_c and w_c are the x and y velocity [m/s].
-    """
+    v_x: float = 0.0
+    v_y: float = 0.0
+    v_z: float = 0.0
+    w_x: float = 0.0
+    w_y: float = 0.0
+    w_z: float = 0.0
 
-    v_c: float = 0.0
-    w_c: float = 0.0
+
+class BaseTwist(Record, frozen=True):
+    """Motion of the base in its own frame: v_x, v_y [m/s], w_z [rad/s]; v_y = 0 unless it can move sideways."""
+
+    v_x: float = 0.0
+    v_y: float = 0.0
+    w_z: float = 0.0
 
 
-class Stick(Record, frozen=True, forbid_unknown_fields=True):
-    """One message of the operator's: the whole state of stick and dead-man.
+class Command(Record, frozen=True, forbid_unknown_fields=True):
+    """One message of the operator's: the whole state of stick and dead-man. Its meaning travels with the numbers.
 
-    operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held:
-    whether it is held; v_c, w_c: the command (see `Command`).
+    operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held: whether it is
+    held; twist: the hand's velocity, in `frame` (see `overreach.law.frame`); gripper: its wanted opening, 0 to 1, None
+    where it is to stay; seen: time `t` of the newest state that the operator had before them [s], 0 where none.
     """
 
     operator: int
     seq: int
     grip: int
     held: bool
-    v_c: float
-    w_c: float
+    twist: Twist = Twist()
+    frame: Frame = Frame.HAND
+    gripper: float | None = None
+    seen: float = 0.0
+
+
+class Pose(Record, frozen=True):
+    """Where a body is: x, y, z [m] and its attitude as a unit quaternion q_w, q_x, q_y, q_z.
+
+    heading: the yaw [rad] where it is known as an angle of its own, as odometry counts it; None: that of the
+    quaternion.
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    q_w: float = 1.0
+    q_x: float = 0.0
+    q_y: float = 0.0
+    q_z: float = 0.0
+    heading: float | None = None
+
+    @classmethod
+    def flat(cls, x: float, y: float, heading: float) -> Pose:
+        """Return the pose of a base on level ground."""
+        return cls(x, y, 0.0, math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading), heading)
+
+    @property
+    def yaw(self) -> float:
+        """The heading [rad]; that of the quaternion lies in [-pi, pi]."""
+        if self.heading is not None:
+            return self.heading
+        return math.atan2(
+            2.0 * (self.q_w * self.q_z + self.q_x * self.q_y), 1.0 - 2.0 * (self.q_y * self.q_y + self.q_z * self.q_z)
+        )
 
 
 class PolarState(Record, frozen=True):
@@ -144,13 +128,6 @@ class PolarState(Record, frozen=True):
     l: float
     psi: float
     theta_e: float = 0.0
-
-
-class BaseTwist(Record, frozen=True):
-    """Motion of the base in its own frame: v_b [m/s] forward, w_b [rad/s] counter-clockwise."""
-
-    v_b: float = 0.0
-    w_b: float = 0.0
 
 
 class HandTwist(Record, frozen=True):
@@ -198,56 +175,106 @@ class Plan(Record, frozen=True):
 
 
 class RobotState(Record, frozen=True):
-    """What a robot reports.
+    """What a robot reports, any number of joints.
 
-    t [s]; base pose x_b, y_b [m], theta_b [rad] in the world; base twist v_b [m/s], w_b [rad/s]
-    that is happening; joint angles theta [rad] and joint rates dtheta [rad/s], from the shoulder out.
+    t: its own stamp [s]; pose: of the base in the world; motion: of the base in its own frame, as measured, all six
+    components (a base that rocks rocks the hand); q, dq: joints [rad, m] and their rates, from the shoulder out;
+    gripper: its opening, 0 to 1; ages: how old [s] the base's and the joints' parts were at t; delay: dead time [s] of
+    what is written, where it is known.
     """
 
     t: float
-    x_b: float
-    y_b: float
-    theta_b: float
-    v_b: float
-    w_b: float
-    theta: tuple[float, ...]
-    dtheta: tuple[float, ...]
+    pose: Pose
+    motion: Twist
+    q: tuple[float, ...]
+    dq: tuple[float, ...]
+    gripper: float = 0.0
+    ages: tuple[float, float] = (0.0, 0.0)
+    delay: float = 0.0
+
+    @classmethod
+    def flat(
+        cls,
+        t: float,
+        x_b: float,
+        y_b: float,
+        theta_b: float,
+        v_b: float,
+        w_b: float,
+        q: tuple[float, ...],
+        dq: tuple[float, ...],
+        gripper: float = 0.0,
+    ) -> RobotState:
+        """Return the state of a robot whose base drives on level ground and not sideways."""
+        return cls(t, Pose.flat(x_b, y_b, theta_b), Twist(v_b, 0.0, 0.0, 0.0, 0.0, w_b), q, dq, gripper)
+
+    @property
+    def x_b(self) -> float:
+        """The base's place in the world [m]."""
+        return self.pose.x
+
+    @property
+    def y_b(self) -> float:
+        """The base's place in the world [m]."""
+        return self.pose.y
+
+    @property
+    def theta_b(self) -> float:
+        """The base's heading [rad]."""
+        return self.pose.yaw
+
+    @property
+    def v_b(self) -> float:
+        """The base's speed along its x axis [m/s]."""
+        return self.motion.v_x
+
+    @property
+    def w_b(self) -> float:
+        """The base's turning rate [rad/s]."""
+        return self.motion.w_z
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """All of its numbers but the joints': stamp, pose, motion, gripper, ages, delay."""
+        pose = msgspec.structs.astuple(self.pose)
+        heading = pose[:7] if pose[7] is None else pose
+        motion = msgspec.structs.astuple(self.motion)
+        return (self.t, *heading, *motion, self.gripper, *self.ages, self.delay)
 
     @property
     def plain(self) -> RobotState:
         """The same in Python's own floats; raises where a number is none. Drivers like to report those of numpy."""
-        t, *base = numbers = (self.t, self.x_b, self.y_b, self.theta_b, self.v_b, self.w_b)
-        if set(map(type, (*numbers, *self.theta, *self.dtheta))) == FLOATS:
+        if set(map(type, (*self.numbers, *self.q, *self.dq))) == FLOATS:
             return self
-        x_b, y_b, theta_b, v_b, w_b = [float(number + 0.0) for number in base]  # a text is no number
-        joints = [tuple([float(number + 0.0) for number in one]) for one in (self.theta, self.dtheta)]
-        return RobotState(float(t + 0.0), x_b, y_b, theta_b, v_b, w_b, *joints)
+        t, *numbers = [float(number + 0.0) for number in self.numbers]  # a text is no number
+        *numbers, gripper, base, joints, delay = numbers
+        q, dq = [tuple([float(number + 0.0) for number in one]) for one in (self.q, self.dq)]
+        return RobotState(t, Pose(*numbers[:-6]), Twist(*numbers[-6:]), q, dq, gripper, (base, joints), delay)
 
 
-class Step(Record, frozen=True):
-    """What one step decided.
+class Decision(Record, frozen=True):
+    """What a controller decided for one period.
 
-    state: the newest that is believed of the robot; polar: where the hand is; u_r, u_t: its commanded velocity [m/s];
-    split: the shares, with the rates as they are written; dtheta: joint rates [rad/s]; scale: part of the command that
-    is carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty.
+    state: the newest that is believed of the robot; polar: where the hand is; u: its commanded velocity; split: the
+    shares, with the rates as they are written; joints: joint rates [rad/s, m/s]; scale: part of the command that is
+    carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty.
     """
 
     state: RobotState
     polar: PolarState
-    u_r: float
-    u_t: float
+    u: HandTwist
     split: Split
-    dtheta: tuple[float, ...]
+    joints: tuple[float, ...]
     scale: float
     verdict: Verdict
     fault: str = ""
 
     @property
-    def twist(self) -> BaseTwist:
+    def base(self) -> BaseTwist:
         """The base twist that is written."""
-        return BaseTwist(self.split.v_b, self.split.w_b)
+        return BaseTwist(self.split.v_b, 0.0, self.split.w_b)
 
     @property
     def rates(self) -> tuple[float, ...]:
         """All that is written, channel by channel."""
-        return (self.split.v_b, self.split.w_b, *self.dtheta)
+        return (self.split.v_b, self.split.w_b, *self.joints)

@@ -11,7 +11,7 @@ from overreach.arm.limits import fastest_towards
 from overreach.arm.mount import Mount
 from overreach.arm.planar import SINE_DAMPED, Arm2R, forward, inverse, jacobian, polar_rates
 from overreach.arm.polar import hand_in_world, wrap
-from overreach.types import Verdict
+from overreach.verdicts import Verdict
 from tests.strategies import angles
 
 links = st.floats(0.1, 1.5)

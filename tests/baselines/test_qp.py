@@ -23,8 +23,10 @@ from overreach.model.planar import planar
 from overreach.plugs import load_law
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.simulate import simulate
-from overreach.types import HandTwist, Verdict
+from overreach.types import HandTwist
+from overreach.verdicts import Verdict
 from tests.laws import Bound, holistic, qp, weighted
+from tests.said import push
 from tests.strategies import bearings, lengths, speeds
 
 pytestmark = pytest.mark.filterwarnings("ignore:OSQP exited", "ignore:.*raise_error:PendingDeprecationWarning")
@@ -113,9 +115,9 @@ def test_no_solution_reaches_whoever_drives() -> None:
     """In a controller no solution means: the robot stands still, and the verdict says why."""
     robot = KinematicRobot()
     controller = HandController(robot.model, PaperQP("osqp", settings={"max_iter": 1}))
-    step = controller.step(robot.read(0.0), 0.4, 0.0, 0.005)
+    step = controller.decide(robot.read(0.0), push(0.4, 0.0), 0.005)
     assert step.verdict is Verdict.NO_SOLUTION
-    assert (step.twist.v_b, step.twist.w_b, *step.dtheta) == (0.0,) * 4
+    assert step.rates == (0.0,) * 4
 
 
 @given(lengths, bearings, speeds, speeds)
@@ -198,10 +200,10 @@ def test_holistic_turns_the_base_to_the_hand_and_keeps_the_arm_bent() -> None:
     robot = KinematicRobot(MODEL, psi=0.4, l=0.8)
     controller = HandController(robot.model, Holistic())
     for k in range(4000):
-        step = controller.step(robot.read(k * 0.005), 0.3, 0.0, 0.005)
-        robot.write(step.twist, step.dtheta, k * 0.005)
+        step = controller.decide(robot.read(k * 0.005), push(0.3, 0.0), 0.005)
+        robot.write(step.base, step.joints, None, k * 0.005, k * 0.005)
     assert abs(step.polar.psi) < 0.02
-    assert robot.true.theta[1] == pytest.approx(math.pi / 2, abs=0.2)
+    assert robot.true.q[1] == pytest.approx(math.pi / 2, abs=0.2)
 
 
 def test_the_damper_slows_stops_and_backs_out() -> None:

@@ -10,7 +10,8 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page
 
 from overreach.link.endpoint import free_port
-from overreach.link.messages import Accepted, Configure, Reset, Restart, Stop
+from overreach.link.messages import Accepted, ConfigureRequest
+from overreach.requests import ResetRequest, RestartRequest, StopRequest
 from tests.processes import GENEROUS_S, Half, Observer, half, robot, until
 
 
@@ -64,11 +65,11 @@ def shared_cockpit() -> Iterator[Cockpit]:
 def cockpit(shared_cockpit: Cockpit) -> Cockpit:
     """The shared processes, the robot disarmed at its start with the settings that it began with."""
     cockpit, observer = shared_cockpit, shared_cockpit.observer
-    for request in (Stop(), Reset(), Configure(observer.welcome.settings)):
+    for request in (StopRequest(), ResetRequest(), ConfigureRequest(observer.welcome.settings)):
         assert observer.link.request(request) == Accepted()
     until(lambda: observer.speed() == 0.0 and not observer.now.armed and not observer.now.stopped, what="rest")
-    until(lambda: observer.link.request(Restart()) == Accepted(), what="the start")
-    until(lambda: observer.now.x_b == 0.0, what="the start")
+    until(lambda: observer.link.request(RestartRequest()) == Accepted(), what="the start")
+    until(lambda: observer.now.pose.x == 0.0, what="the start")
     cockpit.requests.clear()
     cockpit.errors.clear()
     return cockpit

@@ -40,17 +40,17 @@ def out_and_back(page: Page, observer: Observer, forward: Callable[[], None], ba
     forward()
     until(lambda: words(page) == "blending", what="blending")
     until(lambda: words(page) == "base", what="base")
-    until(lambda: observer.now.x_e - start.x_e > 2.05, what="2 m")
+    until(lambda: observer.now.hand[0] - start.hand[0] > 2.05, what="2 m")
     far = observer.now
     assert far.mu > 0.99
-    assert far.x_b > 1.0
-    assert abs(far.y_e) < 0.05
+    assert far.pose.x > 1.0
+    assert abs(far.hand[1]) < 0.05
     assert page.inner_text("#verdict-word") == "Moving"
     back()
     until(lambda: observer.now.mu == 0.0 and observer.now.v_m < -0.2, what="the arm's turn")
     until(lambda: 0.5 < observer.now.l < 0.8, what="the arm's reach")
     assert words(page) == "arm"
-    assert math.dist((start.x_e, start.y_e), (far.x_e, far.y_e)) > 2.0
+    assert math.dist((start.hand[0], start.hand[1]), (far.hand[0], far.hand[1])) > 2.0
 
 
 def test_pointer(page: Page, cockpit: Cockpit) -> None:
@@ -107,7 +107,7 @@ def test_keyboard(page: Page, cockpit: Cockpit) -> None:
     until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
     for key, wish in (("w", (0.4, 0.0)), ("a", (0.0, 0.4)), ("s", (-0.4, 0.0)), ("d", (0.0, -0.4))):
         page.keyboard.down(key)
-        until(lambda wish=wish: (cockpit.observer.now.v_c, cockpit.observer.now.w_c) == wish, what=key)  # type: ignore[misc]  # bound in a loop
+        until(lambda wish=wish: (cockpit.observer.now.twist.v_x, cockpit.observer.now.twist.w_z) == wish, what=key)  # type: ignore[misc]  # bound in a loop
         page.keyboard.up(key)
 
 
@@ -143,8 +143,8 @@ def test_turning(page: Page, cockpit: Cockpit) -> None:
     arm(page, cockpit.observer)
     page.keyboard.down("ArrowLeft")
     until(lambda: page.inner_text('[data-share="sigma"] .who') == "base", what="base")
-    until(lambda: cockpit.observer.now.theta_b > 0.5, what="the base's turn")
-    assert cockpit.observer.now.y_e > 0.3
+    until(lambda: cockpit.observer.now.pose.yaw > 0.5, what="the base's turn")
+    assert cockpit.observer.now.hand[1] > 0.3
     assert cockpit.observer.now.psi <= 0.65 + 1e-9
     page.keyboard.up("ArrowLeft")
 
@@ -154,9 +154,9 @@ def test_diagonals_stay_in_the_circle(page: Page, cockpit: Cockpit) -> None:
     arm(page, cockpit.observer)
     page.keyboard.down("ArrowUp")
     page.keyboard.down("ArrowLeft")
-    until(lambda: cockpit.observer.now.w_c > 0.28, what="the ramp")
-    assert cockpit.observer.now.v_c == pytest.approx(0.4 * math.sqrt(0.5), abs=1e-6)
-    assert cockpit.observer.now.w_c == pytest.approx(0.4 * math.sqrt(0.5), abs=1e-6)
+    until(lambda: cockpit.observer.now.twist.w_z > 0.28, what="the ramp")
+    assert cockpit.observer.now.twist.v_x == pytest.approx(0.4 * math.sqrt(0.5), abs=1e-6)
+    assert cockpit.observer.now.twist.w_z == pytest.approx(0.4 * math.sqrt(0.5), abs=1e-6)
     page.keyboard.up("ArrowUp")
     page.keyboard.up("ArrowLeft")
 

@@ -7,6 +7,7 @@ import http.client
 import re
 from typing import Literal
 
+import msgspec
 import pytest
 from playwright.sync_api import BrowserContext, Error, Page
 
@@ -58,7 +59,9 @@ def test_settings_are_live(page: Page, cockpit: Cockpit) -> None:
 
     def force() -> dict[str, object]:
         settings = observer.link.welcome(5.0).settings
-        return {name: getattr(settings, name) for name in settings.__struct_fields__}
+        flat = {"law": settings.law.name, "blend": settings.blend.name, "frame": settings.frame.value}
+        numbers = {**settings.blend.parameters, **settings.law.parameters, "speed_scale": settings.speed_scale}
+        return {**flat, **numbers, **msgspec.structs.asdict(settings.workspace)}
 
     choose_law(page, "paper")
     until(lambda: force()["law"] == "paper", what="the law")
@@ -68,19 +71,37 @@ def test_settings_are_live(page: Page, cockpit: Cockpit) -> None:
     page.click('#set-blend button:has-text("tanh")')
     until(lambda: force()["blend"] == "tanh", what="the blend")
     slide("alpha", ["ArrowRight"] * 3)
-    until(lambda: force()["alpha"] == 53.0, what="alpha")
+    until(lambda: force().get("alpha") == 53.0, what="alpha")
     slide("beta", ["ArrowLeft"] * 2)
-    until(lambda: force()["beta"] == 48.0, what="beta")
+    until(lambda: force().get("beta") == 48.0, what="beta")
     slide("speed_scale", ["ArrowLeft"] * 4)
     until(lambda: force()["speed_scale"] == pytest.approx(0.8), what="the speed")
     slide("l_min", ["ArrowRight"] * 2)
     until(lambda: force()["l_min"] == pytest.approx(0.47), what="L_min")
     slide("psi_min", ["ArrowRight"] * 2)
     until(lambda: force()["psi_min"] == pytest.approx(-0.5), what="Psi_min")
-    until(lambda: page.evaluate("overreach.page.settings.psi_min") == pytest.approx(-0.5), what="the view")
+    until(lambda: page.evaluate("overreach.page.settings.workspace.psi_min") == pytest.approx(-0.5), what="the view")
     page.click("#defaults")
     until(lambda: force()["law"] == "exact", what="the defaults")
     until(lambda: "exact" in page.locator("#settings").inner_text(), what="the controls")
+    assert cockpit.errors == []
+
+
+def test_a_laws_own_parameters_are_on_the_page(page: Page, cockpit: Cockpit) -> None:
+    """What a law's description says is offered: the weight of `weighted`, solver and damping of `qp`; and is used."""
+    observer = cockpit.observer
+    choose_law(page, "weighted")
+    slider = page.locator('#set-base_weight [tabindex="0"]').first
+    slider.wait_for(state="visible")
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    until(lambda: observer.link.welcome(5.0).settings.law.parameters.get("base_weight") == pytest.approx(1.1))
+    assert page.locator("#set-damping").first.is_hidden()
+    choose_law(page, "qp")
+    page.locator("#set-damping").first.wait_for(state="visible")
+    page.locator("label:has(#set-solver) >> visible=true").first.click()
+    page.locator(".q-menu .q-item", has_text="quadprog").click()
+    until(lambda: observer.link.welcome(5.0).settings.law.parameters.get("solver") == "quadprog", what="the solver")
     assert cockpit.errors == []
 
 
@@ -88,7 +109,7 @@ def test_settings_reach_other_pages(page: Page, context: BrowserContext, cockpit
     """Settings that one page changes are shown by the other."""
     other = cockpit.watch(context.new_page())
     choose_law(page, "switch")
-    until(lambda: other.evaluate("overreach.page.settings.law") == "switch", what="the other page")
+    until(lambda: other.evaluate("overreach.page.settings.law.name") == "switch", what="the other page")
     until(lambda: "switch" in other.locator("#settings").inner_text(), what="the other page's controls")
 
 
@@ -131,13 +152,13 @@ def test_view_follows_zooms_and_pans(page: Page, cockpit: Cockpit) -> None:
     at_first = page.evaluate("overreach.view.centre.x")
     arm(page, cockpit.observer)
     page.keyboard.down("ArrowUp")
-    until(lambda: cockpit.observer.now.x_b > 0.5, what="a drive")
+    until(lambda: cockpit.observer.now.pose.x > 0.5, what="a drive")
     page.keyboard.up("ArrowUp")
     until(lambda: page.evaluate("overreach.view.centre.x") > at_first + 0.3, what="the camera")
     trails = page.evaluate("[overreach.view.trails.hand.length, overreach.view.trails.base.length]")
     assert min(trails) > 10
     page.click("#restart")
-    until(lambda: abs(cockpit.observer.now.x_b) < 1e-9, what="the start")
+    until(lambda: abs(cockpit.observer.now.pose.x) < 1e-9, what="the start")
 
 
 SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")

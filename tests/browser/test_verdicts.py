@@ -9,8 +9,8 @@ import msgspec
 import pytest
 from playwright.sync_api import BrowserContext
 
-from overreach.link.messages import Accepted, Configure
-from overreach.types import Verdict
+from overreach.link.messages import Accepted, Choice, ConfigureRequest
+from overreach.verdicts import Verdict
 from tests.browser.conftest import Cockpit, running_cockpit
 from tests.browser.test_drive import arm
 from tests.plugin import install
@@ -24,8 +24,8 @@ def test_a_fault_on_the_page(context: BrowserContext, tmp_path: Path) -> None:
     """A law that goes bad while a person drives: Fault and its reason; Reset, a law that is right, Arm, a new press."""
     with running_cockpit(install(tmp_path)) as cockpit:
         observer = cockpit.observer
-        bad, good = (msgspec.structs.replace(observer.welcome.settings, law=law) for law in ("nan", "exact"))
-        assert observer.link.request(Configure(bad)) == Accepted()
+        bad, good = (msgspec.structs.replace(observer.welcome.settings, law=Choice(law)) for law in ("nan", "exact"))
+        assert observer.link.request(ConfigureRequest(bad)) == Accepted()
         page = cockpit.watch(context.new_page())
         arm(page, observer)
         page.keyboard.down("ArrowUp")
@@ -36,7 +36,7 @@ def test_a_fault_on_the_page(context: BrowserContext, tmp_path: Path) -> None:
         assert page.is_disabled("#arm")
         assert page.is_enabled("#reset")
         assert "Press Reset" in page.inner_text("#pad-hint")
-        assert observer.link.request(Configure(good)) == Accepted()
+        assert observer.link.request(ConfigureRequest(good)) == Accepted()
         page.click("#reset")
         until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="the reset")
         arm(page, observer)
@@ -65,7 +65,7 @@ def test_the_page_tells_of_the_end(context: BrowserContext, fresh_cockpit: Cockp
     until(lambda: page.inner_text("#verdict-reason") == "The robot side has ended.", what="the end")
     assert "Ending" in page.evaluate("[...words]")
     assert page.inner_text("#verdict-word") == "No connection"
-    assert page.evaluate("overreach.page.state.v_b") == 0
+    assert page.evaluate("overreach.page.state.base.v_x") == 0
 
 
 def test_every_verdict_has_a_look() -> None:

@@ -10,11 +10,12 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from overreach.link.messages import Accepted, Arm, Configure, Refused, Reset, State
+from overreach.link.messages import Accepted, Choice, ConfigureRequest, Refused, State
+from overreach.requests import ArmRequest, ResetRequest
 from tests.plugin import install
 from tests.processes import Driver, Half, Observer, half, port_is_free, robot, until
 
-CHANGE = {"v_b": 3.5, "w_b": 12.0}
+CHANGE = {"v_x": 3.5, "w_z": 12.0}
 PERIOD_S = 0.005
 
 
@@ -23,12 +24,13 @@ def bounded(states: list[State]) -> None:
     for before, after in pairwise(states):
         ticks = after.tick - before.tick
         for name, change in CHANGE.items():
-            assert abs(getattr(after, name) - getattr(before, name)) <= change * PERIOD_S * ticks * (1 + 1e-6) + 1e-12
+            changed = abs(getattr(after.base, name) - getattr(before.base, name))
+            assert changed <= change * PERIOD_S * ticks * (1 + 1e-6) + 1e-12
 
 
 def use(observer: Observer, law: str) -> None:
-    settings = msgspec.structs.replace(observer.welcome.settings, law=law)
-    assert observer.link.request(Configure(settings)) == Accepted()
+    settings = msgspec.structs.replace(observer.welcome.settings, law=Choice(law))
+    assert observer.link.request(ConfigureRequest(settings)) == Accepted()
 
 
 def drive_until(driver: Driver, observer: Observer, verdict: str) -> None:
@@ -60,13 +62,13 @@ def test_a_bad_law_while_driving(law: str, says: str, tmp_path: Path) -> None:
         assert observer.now.sentence.startswith(says)
         assert (observer.now.stopped, observer.now.armed, observer.now.look) == (True, False, "stop")
         states = list(observer.states)
-        assert max(state.v_b for state in states) > 0.2
+        assert max(state.base.v_x for state in states) > 0.2
         bounded(states)
-        assert observer.link.request(Arm(7, driver.grip)) == Refused("Fault: press Reset first.")
+        assert observer.link.request(ArmRequest(7, driver.grip)) == Refused("Fault: press Reset first.")
         use(observer, "exact")
         driver.drive(0.3)
         assert observer.speed() == 0.0
-        assert observer.link.request(Reset()) == Accepted()
+        assert observer.link.request(ResetRequest()) == Accepted()
         driver.drive(0.3)
         assert observer.speed() == 0.0
         driver.arm()
@@ -81,7 +83,7 @@ def coming_to_rest(observer: Observer, running: Half, how: signal.Signals, code:
     """Send a signal while the robot drives; return the states from then on."""
     driver = Driver(observer.link)
     driver.arm()
-    until(lambda: (driver.drive(0.1), observer.now.v_b > 0.39)[1], what="full speed")  # type: ignore[func-returns-value]
+    until(lambda: (driver.drive(0.1), observer.now.base.v_x > 0.39)[1], what="full speed")  # type: ignore[func-returns-value]
     since = observer.now.t
     assert running.end(how) == code
     until(lambda: observer.speed() == 0.0, what="standstill")
@@ -95,8 +97,8 @@ def test_every_ordered_end_is_a_ramp(how: signal.Signals) -> None:
         states = coming_to_rest(observer, running, how, 0)
         ramp = [state for state in states if state.verdict == "ending"]
         assert len(ramp) >= 0.39 / (3.5 * PERIOD_S) - 1  # every tick of it is told
-        assert [state.v_b for state in ramp] == sorted((state.v_b for state in ramp), reverse=True)
-        assert ramp[-1].v_b == 0.0
+        assert [state.base.v_x for state in ramp] == sorted((state.base.v_x for state in ramp), reverse=True)
+        assert ramp[-1].base.v_x == 0.0
         assert ramp[-1].sentence == "The robot side was told to end: the robot comes to rest."
         bounded(states)
         assert port_is_free(int(endpoint.rsplit(":", 1)[1]))
@@ -115,8 +117,8 @@ def test_a_plug_in_that_leaves_is_a_ramp_too(tmp_path: Path) -> None:
             time.sleep(1 / 60)
         assert running.process.returncode == 7
         states = list(observer.states)
-        assert max(state.v_b for state in states) > 0.2
-        assert states[-1].v_b == 0.0
+        assert max(state.base.v_x for state in states) > 0.2
+        assert states[-1].base.v_x == 0.0
         assert states[-1].verdict == "ending"
         bounded(states)
 
@@ -133,7 +135,7 @@ def test_a_terminal_that_closes_ends_drive_in_order(how: signal.Signals, code: i
             states = coming_to_rest(observer, drive, how, code)
         finally:
             observer.close()
-        assert [state.v_b for state in states if state.verdict == "ending"][-1] == 0.0
+        assert [state.base.v_x for state in states if state.verdict == "ending"][-1] == 0.0
         bounded(states)
         until(lambda: port_is_free(int(endpoint.rsplit(":", 1)[1])), what="a free port")
 

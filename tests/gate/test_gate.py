@@ -14,7 +14,9 @@ from hypothesis import strategies as st
 from overreach.errors import SetupError
 from overreach.gate.gate import LOST_S, STALE_S, Gate
 from overreach.gate.limits import Limits
-from overreach.types import Motion, Stick, Verdict
+from overreach.types import Command
+from overreach.verdicts import Motion, Verdict
+from tests.said import said
 
 DT = 0.005
 ME, OTHER = 11, 22
@@ -34,9 +36,9 @@ class Bench:
         self.operator = operator
         self.out: list[tuple[float, float]] = []
 
-    def stick(self, held: bool = True, v_c: float = 0.4, w_c: float = 0.0) -> Stick:
+    def stick(self, held: bool = True, v_c: float = 0.4, w_c: float = 0.0) -> Command:
         self.seq += 1
-        return Stick(self.operator, self.seq, self.grip, held, v_c, w_c)
+        return said(self.operator, self.seq, self.grip, held, v_c, w_c)
 
     def arm(self, grip: int | None = None) -> Verdict | None:
         return self.gate.arm(self.operator, self.grip if grip is None else grip, self.now)
@@ -44,11 +46,11 @@ class Bench:
     def press(self) -> None:
         self.grip += 1
 
-    def tick(self, stick: Stick | None = None) -> Verdict:
+    def tick(self, stick: Command | None = None) -> Verdict:
         if stick:
             self.gate.accept(stick, self.now)
         gated = self.gate.tick(self.now, DT)
-        self.out.append((gated.v_c, gated.w_c))
+        self.out.append((gated.twist.v_x, gated.twist.w_z))
         self.now += DT
         return gated.verdict
 
@@ -107,11 +109,11 @@ def test_every_way_to_rest_zeroes_both_parts(way: str) -> None:
         bench.gate.accept(bench.stick(v_c=0.3, w_c=-0.2), bench.now)
         gated = bench.gate.tick(bench.now, DT)
         bench.now += DT
-        assert gated.v_c * 0.2 == pytest.approx(-gated.w_c * 0.3)
-        assert gated.motion is (Motion.NONE if gated.v_c == 0.0 else Motion.RAMPING)
+        assert gated.twist.v_x * 0.2 == pytest.approx(-gated.twist.w_z * 0.3)
+        assert gated.motion is (Motion.NONE if gated.twist.v_x == 0.0 else Motion.RAMPING)
         if "other" not in way:
             assert gated.verdict is verdict
-        assert (gated.v_c, gated.w_c) == (0.0, 0.0) or k < 24
+        assert (gated.twist.v_x, gated.twist.w_z) == (0.0, 0.0) or k < 24
     assert bench.gate.resting
 
 
@@ -121,7 +123,7 @@ def test_silence_zeroes_both_parts() -> None:
         for more, told in ((0.0, verdict), (1e-12, Verdict.STALE if age == 0.2 else Verdict.LOST)):
             gate = Gate()
             gate.arm(ME, 0, 0.0)
-            gate.accept(Stick(ME, 1, 1, True, 0.3, -0.2), 0.0)
+            gate.accept(said(ME, 1, 1, True, 0.3, -0.2), 0.0)
             for _ in range(100):
                 gate.tick(0.0, DT)
             assert gate.tick(age + more, DT).verdict is (told if told is not Verdict.STALE else Verdict.STALE)
@@ -129,9 +131,9 @@ def test_silence_zeroes_both_parts() -> None:
             assert gated.motion is (Motion.ALLOWED if told is Verdict.MOVING else Motion.RAMPING)
             for _ in range(60):
                 gated = gate.tick(age + more, DT)
-            assert ((gated.v_c, gated.w_c) == (0.3, -0.2)) is (told is Verdict.MOVING)
+            assert ((gated.twist.v_x, gated.twist.w_z) == (0.3, -0.2)) is (told is Verdict.MOVING)
             if told is not Verdict.MOVING:
-                assert (gated.v_c, gated.w_c) == (0.0, 0.0)
+                assert (gated.twist.v_x, gated.twist.w_z) == (0.0, 0.0)
                 assert gated.motion is Motion.NONE
 
 
@@ -159,7 +161,7 @@ def test_turning_alone_is_motion() -> None:
         bench.gate.accept(bench.stick(v_c=0.0, w_c=0.4), bench.now)
         gated = bench.gate.tick(bench.now, DT)
         bench.now += DT
-    assert (gated.v_c, gated.w_c, gated.motion) == (0.0, 0.4, Motion.ALLOWED)
+    assert (gated.twist.v_x, gated.twist.w_z, gated.motion) == (0.0, 0.4, Motion.ALLOWED)
     assert not bench.gate.resting
     for v_c, w_c in ((0.4, 0.0), (-0.4, 0.0), (0.0, 0.4), (0.0, -0.4)):
         one_way = Bench(50.0)
@@ -191,12 +193,12 @@ def test_a_refusal_is_told_for_half_a_second() -> None:
     gate = Gate()
     gate.arm(ME, 0, 0.0)
     assert gate.tick(0.0, DT).verdict is Verdict.RELEASED
-    gate.accept(Stick(ME, 1, 0, False, math.nan, 0.0), 0.0)
+    gate.accept(said(ME, 1, 0, False, math.nan, 0.0), 0.0)
     assert gate.refused == 1
     assert gate.tick(0.0, DT).verdict is Verdict.NOT_FINITE
     assert gate.tick(math.nextafter(0.5, 0.0), DT).verdict is Verdict.NOT_FINITE
     assert gate.tick(0.5, DT).verdict is Verdict.RELEASED
-    gate.accept(Stick(ME, 1, 0, False, math.nan, 0.0), 1.0)
+    gate.accept(said(ME, 1, 0, False, math.nan, 0.0), 1.0)
     gate.latch.stop()
     assert gate.tick(1.0, DT).verdict is Verdict.STOPPED
 
@@ -205,23 +207,23 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     """Another may arm once the robot rests, in both parts, and the first has been silent for 1 s, to the last bit."""
     gate = Gate()
     gate.arm(ME, 0, 0.0)
-    gate.accept(Stick(ME, 1, 1, False, 0.0, 0.0), 0.0)
+    gate.accept(said(ME, 1, 1, False, 0.0, 0.0), 0.0)
     gate.tick(0.0, DT)
     assert gate.arm(OTHER, 0, 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 1.0) is None
     assert gate.seq == 1  # to arm again loses nothing
-    assert gate.accept(Stick(1, 1, 1, True, 0.0, 0.0), 1.0) is Verdict.OTHER_OPERATOR
+    assert gate.accept(said(1, 1, 1, True, 0.0, 0.0), 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(OTHER, 0, math.nextafter(1.0, 2.0)) is None
     assert gate.latch.operator == OTHER
     assert gate.seq == 0  # nothing of the first's counts
-    gate.accept(Stick(OTHER, 1, 1, False, 0.0, 0.0), 2.0)
+    gate.accept(said(OTHER, 1, 1, False, 0.0, 0.0), 2.0)
     assert gate.seq == 1
     assert gate.arm(ME, 0, 2.5) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 9.0) is None
     assert gate.seq == 0
     turning = Gate()
     turning.arm(ME, 0, 0.0)
-    turning.accept(Stick(ME, 1, 1, True, 0.0, 0.4), 0.0)
+    turning.accept(said(ME, 1, 1, True, 0.0, 0.4), 0.0)
     turning.tick(0.0, DT)
     assert turning.arm(OTHER, 0, 9.0) is Verdict.OTHER_OPERATOR
     assert Gate().arm(OTHER, 0, 0.0) is None
@@ -234,11 +236,11 @@ def test_numbers_of_messages_and_presses_begin_at_one() -> None:
     """Message 0 is none, and so is press 0 or any that was spent, whatever number the robot is armed with."""
     gate = Gate()
     gate.arm(ME, -5, 0.0)
-    assert gate.accept(Stick(ME, 0, 1, True, 0.4, 0.0), 0.0) is Verdict.OUT_OF_ORDER
-    assert gate.accept(Stick(ME, 1, 0, True, 0.4, 0.0), 0.0) is None
+    assert gate.accept(said(ME, 0, 1, True, 0.4, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(ME, 1, 0, True, 0.4, 0.0), 0.0) is None
     assert gate.tick(0.0, DT).verdict is Verdict.REGRIP
     gate.latch.spend(3)
-    gate.accept(Stick(ME, 2, 2, True, 0.4, 0.0), 0.0)
+    gate.accept(said(ME, 2, 2, True, 0.4, 0.0), 0.0)
     assert gate.tick(0.0, DT).verdict is Verdict.REGRIP
 
 
@@ -247,30 +249,30 @@ def test_a_second_of_silence_to_the_last_bit_is_no_loss() -> None:
     for silence, verdict in ((1.0, Verdict.ACCELERATION), (math.nextafter(1.0, 2.0), Verdict.REGRIP)):
         gate = Gate()
         gate.arm(ME, 0, 0.0)
-        gate.accept(Stick(ME, 1, 1, True, 0.4, 0.0), 0.0)
-        gate.accept(Stick(ME, 2, 2, True, 0.4, 0.0), silence)
+        gate.accept(said(ME, 1, 1, True, 0.4, 0.0), 0.0)
+        gate.accept(said(ME, 2, 2, True, 0.4, 0.0), silence)
         assert gate.tick(silence, DT).verdict is verdict
 
 
 def test_what_the_gate_says_cannot_be_changed() -> None:
     """What the gate let through is a record: nobody on the way can alter it."""
     with pytest.raises(AttributeError):
-        Gate().tick(0.0, DT).v_c = 1.0  # type: ignore[misc]
+        Gate().tick(0.0, DT).scale = 1.0  # type: ignore[misc]
 
 
 def test_no_more_than_64_operators_are_remembered() -> None:
     """The last 64 operators' messages are remembered, and no more: the 65th before may begin anew."""
     gate = Gate()
     for operator in range(1, 66):
-        gate.accept(Stick(operator, 5, 1, False, 0.0, 0.0), 0.0)
-    assert gate.accept(Stick(2, 5, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
-    assert gate.accept(Stick(1, 5, 1, False, 0.0, 0.0), 0.0) is None
-    assert gate.accept(Stick(2, 5, 1, False, 0.0, 0.0), 0.0) is None  # the oldest, for the first came back
-    assert gate.accept(Stick(60, 4, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+        gate.accept(said(operator, 5, 1, False, 0.0, 0.0), 0.0)
+    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(1, 5, 1, False, 0.0, 0.0), 0.0) is None
+    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0), 0.0) is None  # the oldest, for the first came back
+    assert gate.accept(said(60, 4, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
     for operator in range(200, 263):
-        gate.accept(Stick(2, operator, 1, False, 0.0, 0.0), 0.0)  # who is heard stays
-        gate.accept(Stick(operator, 5, 1, False, 0.0, 0.0), 0.0)
-    assert gate.accept(Stick(2, 262, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+        gate.accept(said(2, operator, 1, False, 0.0, 0.0), 0.0)  # who is heard stays
+        gate.accept(said(operator, 5, 1, False, 0.0, 0.0), 0.0)
+    assert gate.accept(said(2, 262, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
 
 
 def test_what_a_new_gate_knows() -> None:
@@ -278,24 +280,24 @@ def test_what_a_new_gate_knows() -> None:
     gate = Gate()
     assert (gate.seq, gate.refused, gate.resting, gate.speed_scale) == (0, 0, True, 1.0)
     gate.arm(ME, 0, 0.0)
-    assert gate.accept(Stick(ME, 1, 1, True, 0.1, 0.0), 0.0) is None
+    assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0), 0.0) is None
     assert gate.seq == 1
-    assert gate.accept(Stick(ME, 1, 1, True, 0.1, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0), 0.0) is Verdict.OUT_OF_ORDER
     gate.set_speed_scale(1.0)
-    assert gate.tick(0.0, DT).v_c == pytest.approx(2.5 * DT)
+    assert gate.tick(0.0, DT).twist.v_x == pytest.approx(2.5 * DT)
 
 
 def test_speed_and_ramp_are_told() -> None:
     """A command past the speed limit says SPEED and its scale, one that ramps ACCELERATION, else MOVING."""
     gate = Gate()
     gate.arm(ME, 0, 0.0)
-    gate.accept(Stick(ME, 1, 1, True, 0.8, 0.0), 0.0)
+    gate.accept(said(ME, 1, 1, True, 0.8, 0.0), 0.0)
     gated = gate.tick(0.0, 1.0)
-    assert (gated.verdict, gated.scale, gated.v_c) == (Verdict.SPEED, 0.5, 0.4)
-    gate.accept(Stick(ME, 2, 1, True, -0.4, 0.0), 0.0)
+    assert (gated.verdict, gated.scale, gated.twist.v_x) == (Verdict.SPEED, 0.5, 0.4)
+    gate.accept(said(ME, 2, 1, True, -0.4, 0.0), 0.0)
     assert gate.tick(0.0, DT).verdict is Verdict.ACCELERATION
     gated = gate.tick(0.0, 1.0)
-    assert (gated.verdict, gated.scale, gated.v_c) == (Verdict.MOVING, 1.0, -0.4)
+    assert (gated.verdict, gated.scale, gated.twist.v_x) == (Verdict.MOVING, 1.0, -0.4)
 
 
 @given(starts)
@@ -400,7 +402,7 @@ def test_order(start: float, chance: random.Random) -> None:
         dirty.seq = clean.seq
         clean.tick(stick)
         dirty.gate.accept(stick, dirty.now)
-        old = Stick(ME, chance.randint(1, stick.seq), stick.grip, True, 0.4, 0.4)
+        old = said(ME, chance.randint(1, stick.seq), stick.grip, True, 0.4, 0.4)
         assert dirty.gate.accept(old, dirty.now) is Verdict.OUT_OF_ORDER
         dirty.tick()
         assert k >= 0
@@ -425,7 +427,7 @@ def test_not_finite_is_refused(start: float, bad: float, second: bool) -> None:
 def test_only_who_armed_drives(start: float) -> None:
     """Another operator's stick is refused, and so is his Arm while the first is driving."""
     bench = moving(start)
-    assert bench.gate.accept(Stick(OTHER, 1, 1, True, -0.4, 0.0), bench.now) is Verdict.OTHER_OPERATOR
+    assert bench.gate.accept(said(OTHER, 1, 1, True, -0.4, 0.0), bench.now) is Verdict.OTHER_OPERATOR
     assert bench.gate.arm(OTHER, 1, bench.now) is Verdict.OTHER_OPERATOR
     bench.drive(0.1)
     assert bench.v_c == 0.4
@@ -455,7 +457,7 @@ def test_taking_over_passes_through_rest_and_a_new_press(start: float) -> None:
     other.silence(LOST_S + 0.5)
     bench.now = other.now
     assert bench.arm(grip=0) is None
-    assert bench.gate.accept(Stick(ME, 3, bench.grip, True, 0.4, 0.0), bench.now) is Verdict.OUT_OF_ORDER
+    assert bench.gate.accept(said(ME, 3, bench.grip, True, 0.4, 0.0), bench.now) is Verdict.OUT_OF_ORDER
     assert bench.drive(0.3) is Verdict.REGRIP
 
 

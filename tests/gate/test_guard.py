@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from overreach.gate.guard import Guard
-from overreach.types import Channel, Motion
+from overreach.types import Channel
+from overreach.verdicts import Motion
 
 CHANNELS = (
     Channel("v_b", "the base's place", "m", 0.6, 3.5),

@@ -6,48 +6,78 @@ from itertools import product
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import astuple
 
 from overreach.errors import SetupError
 from overreach.gate.limits import Limits, clamp_change, feasible_scale, limit_speed, slew
-from overreach.types import Verdict
+from overreach.types import Twist
+from overreach.verdicts import Verdict
 
 LIMITS = Limits()
-commands = st.tuples(st.floats(-5, 5), st.floats(-5, 5))
+NAMES = ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
+commands = st.builds(Twist, *[st.floats(-5, 5)] * 6)
 fours = st.tuples(*[st.floats(-3, 3)] * 4)
 
 
+def worst(twist: Twist, most: tuple[float, float, float]) -> float:
+    """Return how many times its bound the worst part is: along the ground, up and down, turning."""
+    along, up, turning = most
+    return max(
+        math.hypot(twist.v_x, twist.v_y) / along,
+        abs(twist.v_z) / up,
+        math.hypot(twist.w_x, twist.w_y, twist.w_z) / turning,
+    )
+
+
+def change(one: Twist, other: Twist) -> Twist:
+    return Twist(*[b - a for a, b in zip(astuple(one), astuple(other), strict=True)])
+
+
+MOST, FASTEST = (LIMITS.v_c, LIMITS.v_z, LIMITS.w_c), (LIMITS.dv_c, LIMITS.dv_z, LIMITS.dw_c)
+
+
 @given(commands)
-def test_speed_limit_keeps_the_direction(command: tuple[float, float]) -> None:
+def test_speed_limit_keeps_the_direction(command: Twist) -> None:
     """A command over the limit is shrunk as a whole: its direction stays, and no part passes its limit."""
-    v_c, w_c, scale = limit_speed(*command, LIMITS)
-    assert (v_c, w_c) == pytest.approx((command[0] * scale, command[1] * scale), abs=1e-12)
-    assert abs(v_c) <= LIMITS.v_c * (1 + 1e-8)
-    assert abs(w_c) <= LIMITS.w_c * (1 + 1e-8)
-    assert scale == 1.0 or max(abs(v_c) / LIMITS.v_c, abs(w_c) / LIMITS.w_c) == pytest.approx(1.0)
+    twist, scale = limit_speed(command, LIMITS)
+    assert astuple(twist) == pytest.approx([part * scale for part in astuple(command)], abs=1e-12)
+    assert worst(twist, MOST) <= 1.0 + 1e-8
+    assert scale == 1.0 or worst(twist, MOST) == pytest.approx(1.0)
 
 
 @given(commands, commands, st.floats(0.001, 0.02))
-def test_slew_is_bounded_and_straight(now: tuple[float, float], goal: tuple[float, float], dt: float) -> None:
+def test_slew_is_bounded_and_straight(now: Twist, goal: Twist, dt: float) -> None:
     """The command moves straight towards its goal, by at most a_max dt, and gets there."""
-    v_c, w_c, limited = slew(now, goal, LIMITS, dt)
-    assert abs(v_c - now[0]) <= LIMITS.dv_c * dt * (1 + 1e-8)
-    assert abs(w_c - now[1]) <= LIMITS.dw_c * dt * (1 + 1e-8)
-    cross = (v_c - now[0]) * (goal[1] - now[1]) - (w_c - now[1]) * (goal[0] - now[0])
-    assert cross == pytest.approx(0.0, abs=1e-9)
+    twist, limited = slew(now, goal, LIMITS, dt)
+    bounds = tuple(most * dt for most in FASTEST)
+    assert worst(change(now, twist), (bounds[0], bounds[1], bounds[2])) <= 1.0 + 1e-7
+    way, whole = astuple(change(now, twist)), astuple(change(now, goal))
+    for k in range(6):
+        for j in range(k):
+            assert way[k] * whole[j] - way[j] * whole[k] == pytest.approx(0.0, abs=1e-9)
     if not limited:
-        assert (v_c, w_c) == goal
-    periods = max(abs(goal[0] - now[0]), abs(goal[1] - now[1])) / (2.5 * dt)
-    for _ in range(math.ceil(periods) + 1):
-        v_c, w_c, _ = slew((v_c, w_c), goal, LIMITS, dt)
-    assert (v_c, w_c) == goal
+        assert twist == goal
+    for _ in range(math.ceil(worst(change(now, goal), (bounds[0], bounds[1], bounds[2]))) + 1):
+        twist, _ = slew(twist, goal, LIMITS, dt)
+    assert twist == goal
 
 
 @given(commands, st.floats(0.001, 0.02))
-def test_a_ramp_to_zero_keeps_the_direction(now: tuple[float, float], dt: float) -> None:
+def test_a_ramp_to_zero_keeps_the_direction(now: Twist, dt: float) -> None:
     """While it ramps down, the command keeps pointing the same way."""
-    v_c, w_c, _ = slew(now, (0.0, 0.0), LIMITS, dt)
-    assert v_c * now[1] == pytest.approx(w_c * now[0], abs=1e-9)
-    assert v_c * now[0] >= 0.0
+    twist, _ = slew(now, Twist(), LIMITS, dt)
+    was, is_ = astuple(now), astuple(twist)
+    for k in range(6):
+        assert is_[k] * was[k] >= 0.0
+        for j in range(k):
+            assert is_[k] * was[j] == pytest.approx(is_[j] * was[k], abs=1e-9)
+
+
+def test_the_speed_along_the_ground_is_the_same_in_every_direction() -> None:
+    """A diagonal is as fast as a straight line: v_c limits the hand's speed, not its parts."""
+    twist, scale = limit_speed(Twist(0.4, 0.4), LIMITS)
+    assert math.hypot(twist.v_x, twist.v_y) == pytest.approx(0.4)
+    assert scale == pytest.approx(1.0 / math.sqrt(2.0))
 
 
 @given(fours, fours)
@@ -93,30 +123,36 @@ def test_limits_are_checked() -> None:
 
 
 def test_the_default_limits() -> None:
-    """0.4 m/s, 0.4 rad/s, 2.5 m/s^2, 2.5 rad/s^2; the command's longest ramp is v/a."""
+    """0.4 m/s, 0.4 rad/s, 2.5 m/s^2, 2.5 rad/s^2, up and down 0.1 m/s, 0.625 m/s^2; the longest ramp is v/a."""
     assert (LIMITS.v_c, LIMITS.w_c, LIMITS.dv_c, LIMITS.dw_c) == (0.4, 0.4, 2.5, 2.5)
+    assert (LIMITS.v_z, LIMITS.dv_z) == (0.1, 0.625)
     assert LIMITS.ramp_s == pytest.approx(0.16)
+    assert Limits(v_z=0.3, dv_z=0.1).ramp_s == pytest.approx(3.0)
     assert Limits(0.5, 0.4, 1.0, 2.0).ramp_s == 0.5
     assert Limits(0.5, 0.6, 1.0, 0.25).ramp_s == pytest.approx(2.4)
 
 
 def test_what_is_just_at_a_limit_is_as_it_is() -> None:
     """A command or change at its limit, give or take 1e-9 of it, is not scaled; a part in 1e8 more is."""
-    one = Limits(1.0, 1.0, 1.0, 1.0)
+    one = Limits(*[1.0] * 6)
     for value in (1.0, 1.0 - 5e-10, 1.0 + 5e-10, 1.0 + 1e-9, -1.0 - 1e-9):
-        assert limit_speed(value, 0.0, one) == (value, 0.0, 1.0)
-        assert limit_speed(0.0, value, one) == (0.0, value, 1.0)
-        assert slew((0.0, 0.0), (value, 0.0), one, 1.0) == (value, 0.0, False)
-        assert slew((0.0, 0.0), (0.0, value), one, 1.0) == (0.0, value, False)
+        for part in NAMES:
+            twist = Twist(**{part: value})
+            assert limit_speed(twist, one) == (twist, 1.0)
+            assert slew(Twist(), twist, one, 1.0) == (twist, False)
     for value in (1.0 + 1e-8, -1.0 - 1e-8):
-        assert limit_speed(value, 0.0, one)[2] < 1.0
-        assert slew((0.0, 0.0), (value, 0.0), one, 1.0)[2]
+        for part in NAMES:
+            twist = Twist(**{part: value})
+            assert limit_speed(twist, one)[1] < 1.0
+            assert slew(Twist(), twist, one, 1.0)[1]
 
 
 def test_slew_goes_part_of_the_way() -> None:
-    """From (0.5, -0.25) to (2.5, 0.75) in a period that allows a change of 0.5: a quarter of the way, both parts."""
-    one = Limits(9.0, 9.0, 1.0, 1.0)
-    assert slew((0.5, -0.25), (2.5, 0.75), one, 0.5) == (1.0, 0.0, True)
+    """From (0.5, -0.25) to (2.5, 0.75) in a period that allows a change of 0.5: a quarter of the way, all parts."""
+    one = Limits(9.0, 9.0, 1.0, 1.0, 9.0, 1.0)
+    for first, second in (("v_x", "w_z"), ("v_z", "w_x"), ("w_y", "v_y")):
+        now, goal = Twist(**{first: 0.5, second: -0.25}), Twist(**{first: 2.5, second: 0.75})
+        assert slew(now, goal, one, 0.5) == (Twist(**{first: 1.0}), True)
 
 
 def test_nothing_in_the_way_is_no_scale() -> None:

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from overreach.robots.imperfect import Imperfection
-from overreach.types import Verdict
+from overreach.verdicts import Verdict
 from tests.side import Side
 
 HOUR_S = 3600.0

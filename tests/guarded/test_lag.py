@@ -18,7 +18,8 @@ from overreach.model.base import Base
 from overreach.model.planar import planar
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import Frame, RobotState, Verdict
+from overreach.types import Frame, RobotState, Twist
+from overreach.verdicts import Verdict
 
 DT = 0.005
 USUAL = planar().base
@@ -31,9 +32,9 @@ SCALED = {Verdict.SPEED, Verdict.ACCELERATION, Verdict.JOINT_LIMIT, Verdict.BESI
 
 def hand_of(state: RobotState) -> complex:
     """The hand's place in the world, by its chain of bodies."""
-    first = state.theta_b + state.theta[0]
+    first = state.theta_b + state.q[0]
     elbow = complex(state.x_b, state.y_b) + 0.5 * cmath.exp(1j * first)
-    return complex(elbow + 0.5 * cmath.exp(1j * (first + state.theta[1])))
+    return complex(elbow + 0.5 * cmath.exp(1j * (first + state.q[1])))
 
 
 class Push:
@@ -44,28 +45,28 @@ class Push:
     ) -> None:
         model = planar(base=msgspec.structs.replace(base, lag=lag))
         robot = KinematicRobot(model, imperfection)
-        controller = HandController(model, Exact(), Frame.WORLD)
+        controller = HandController(model, Exact())
         self.errors: list[float] = []
         self.speeds: list[float] = []
         self.scale = 1.0
         self.longest = 0.0
         self.verdicts: dict[Verdict, float] = {}
-        command = (0.0, 0.0)
+        command = Twist()
         for k in range(round(seconds / DT)):
             t = k * DT
-            goal = (speed * math.cos(angle), speed * math.sin(angle))
-            command = slew(command, goal, FAST, DT)[:2]
-            step = controller.step(robot.read(t), *command, DT, t)
-            robot.write(step.twist, step.dtheta, t)
+            goal = Twist(speed * math.cos(angle), speed * math.sin(angle))
+            command, _ = slew(command, goal, FAST, DT)
+            step = controller.decide(robot.read(t), command, DT, t, frame=Frame.WORLD)
+            robot.write(step.base, step.joints, None, t, t)
             before = hand_of(robot.true)
             robot.read(t + DT)
             went = (hand_of(robot.true) - before) / DT
             self.speeds.append(abs(went))
-            theta_1, theta_2 = robot.true.theta
+            theta_1, theta_2 = robot.true.q
             l, _ = forward(theta_1, theta_2, 0.5, 0.5)
             self.longest = max(self.longest, l)
             if t >= 0.3:
-                self.errors.append(abs(went - complex(*command)))
+                self.errors.append(abs(went - complex(command.v_x, command.v_y)))
                 self.scale = min(self.scale, step.scale)
                 self.verdicts.setdefault(step.verdict, l)
 

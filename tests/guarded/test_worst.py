@@ -18,9 +18,12 @@ from overreach.control.controller import HandController
 from overreach.errors import LONGEST_TOLD
 from overreach.law.laws import Exact
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import Motion, Plan, RobotState, Split, Verdict
+from overreach.types import Plan, RobotState, Split
+from overreach.verdicts import Motion, Verdict
 from tests.laws import Given, exact
+from tests.said import push
 from tests.side import Side
+from tests.states import got, put
 
 ODD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e9, -3.0, 0.0, 5e-324)
 FIELDS = ("t", "x_b", "y_b", "theta_b", "v_b", "w_b", "theta_1", "theta_2", "dtheta_1", "dtheta_2")
@@ -44,23 +47,6 @@ class Counted:
 def plug(altered: Callable[[int, Split], Any], closes: bool = True) -> Given:
     """Return a law whose answers are altered by a function of (number of the call, right answer)."""
     return Given(Counted(altered), "plug", closes)
-
-
-def put(state: RobotState, field: str, value: float) -> RobotState:
-    """Return `state` with one number changed."""
-    if field.startswith(("theta_1", "theta_2", "dtheta")):
-        name, k = field.rsplit("_", 1)
-        joints = list(getattr(state, name))
-        joints[int(k) - 1] = value
-        return msgspec.structs.replace(state, **{name: tuple(joints)})
-    return msgspec.structs.replace(state, **{field: value})
-
-
-def got(state: RobotState, field: str) -> float:
-    if field.startswith(("theta_1", "theta_2", "dtheta")):
-        name, k = field.rsplit("_", 1)
-        return float(getattr(state, name)[int(k) - 1])
-    return float(getattr(state, field))
 
 
 @settings(max_examples=150)
@@ -253,7 +239,9 @@ def test_numbers_of_other_types_are_taken_as_floats() -> None:
 
     def report(true: RobotState) -> RobotState:
         kind = other[round(true.t * 200) % 4]
-        return msgspec.structs.replace(true, x_b=kind(true.x_b), v_b=kind(true.v_b), theta=tuple(map(kind, true.theta)))
+        return msgspec.structs.replace(
+            put(put(true, "x_b", kind(true.x_b)), "v_b", kind(true.v_b)), q=tuple(map(kind, true.q))
+        )
 
     side = Side(plug(answer), altered=report)
     side.arm()
@@ -313,10 +301,10 @@ def test_an_exception_of_a_law_is_a_fault(error: BaseException) -> None:
 @pytest.mark.parametrize(
     "report",
     [
-        "nonsense", 7, (), RobotState(*(None,) * 8),  # type: ignore[arg-type]
-        RobotState(51.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.1,), (0.0,)),
-        RobotState(51.0, 0.0, "0", 0.0, 0.0, 0.0, (0.1, 0.2), (0.0, 0.0)),  # type: ignore[arg-type]
-        RobotState(51.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.1, 0.2, 0.3), (0.0, 0.0, 0.0)),
+        "nonsense", 7, (), RobotState(*(None,) * 5),  # type: ignore[arg-type]
+        RobotState.flat(51.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.1,), (0.0,)),
+        RobotState.flat(51.0, 0.0, "0", 0.0, 0.0, 0.0, (0.1, 0.2), (0.0, 0.0)),  # type: ignore[arg-type]
+        RobotState.flat(51.0, 0.0, 0.0, 0.0, 0.0, 0.0, (0.1, 0.2, 0.3), (0.0, 0.0, 0.0)),
     ],
 )  # fmt: skip
 def test_a_report_that_is_none_is_a_fault(report: Any) -> None:
@@ -398,8 +386,8 @@ def test_a_command_that_is_not_finite_is_none(bad: float, second: bool) -> None:
     hand = HandController(robot.model, Exact())
     for k in range(300):
         command = (0.2, bad) if second else (bad, 0.0)
-        step = hand.step(robot.read(k / 200), *(command if 100 <= k < 200 else (0.2, 0.0)), 1 / 200)
-        robot.write(step.twist, step.dtheta, k / 200)
+        step = hand.decide(robot.read(k / 200), push(*(command if 100 <= k < 200 else (0.2, 0.0))), 1 / 200)
+        robot.write(step.base, step.joints, None, k / 200, k / 200)
         if 100 <= k < 200:
             assert step.verdict is Verdict.NOT_FINITE
     assert step.verdict is Verdict.MOVING
@@ -410,7 +398,7 @@ def test_without_any_state_nothing_moves() -> None:
     """A robot that has reported nothing yet is not moved: FAULT."""
     hand = HandController(KinematicRobot().model, Exact())
     for _ in range(50):
-        step = hand.step(None, 0.4, 0.0, 0.005)
+        step = hand.decide(None, push(0.4, 0.0), 0.005)
         assert step.verdict is Verdict.FAULT
         assert step.fault == "The robot has reported nothing yet."
         assert not any(step.rates)
@@ -421,11 +409,11 @@ def test_who_tells_no_time_is_given_one() -> None:
     robot = KinematicRobot()
     hand = HandController(robot.model, Exact())
     for k in range(1000):  # a loop that runs 2 % slow, for 5 s
-        step = hand.step(robot.read(k * 0.0051), 0.2, 0.0, 0.005)
-        robot.write(step.twist, step.dtheta, k * 0.0051)
+        step = hand.decide(robot.read(k * 0.0051), push(0.2, 0.0), 0.005)
+        robot.write(step.base, step.joints, None, k * 0.0051, k * 0.0051)
         assert step.verdict is not Verdict.FAULT
     last = robot.read(999 * 0.0051)
-    verdicts = [hand.step(last, 0.2, 0.0, 0.005).verdict for _ in range(30)]
+    verdicts = [hand.decide(last, push(0.2, 0.0), 0.005).verdict for _ in range(30)]
     assert verdicts.index(Verdict.FAULT) in (20, 21, 22)
 
 
@@ -462,6 +450,6 @@ def test_motion_is_what_the_gate_says() -> None:
     robot = KinematicRobot()
     hand = HandController(robot.model, Exact())
     for k in range(100):
-        step = hand.step(robot.read(k / 200), 0.3, 0.0, 1 / 200, motion=Motion.NONE)
+        step = hand.decide(robot.read(k / 200), push(0.3, 0.0), 1 / 200, motion=Motion.NONE)
         assert not any(step.rates)
-    assert hand.step(robot.read(0.5), 0.3, 0.0, 1 / 200).rates[3] != 0.0
+    assert hand.decide(robot.read(0.5), push(0.3, 0.0), 1 / 200).rates[3] != 0.0

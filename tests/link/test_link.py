@@ -10,17 +10,25 @@ from hypothesis import strategies as st
 from overreach.errors import LinkError, SetupError
 from overreach.link import messages
 from overreach.link.endpoint import check_endpoint, free_port, open_session
-from overreach.link.messages import KEY_HELLO, KEY_REQUEST, KEY_STICK, Accepted, Configure, Hello, Refused, Settings
+from overreach.link.messages import Accepted, Choice, ConfigureRequest, Hello, Refused, Settings, key
 from overreach.link.operator_end import OperatorEnd
-from overreach.types import Frame, Stick
+from overreach.model.planar import planar
+from overreach.model.workspace import Workspace
+from overreach.requests import ArmRequest, ResetRequest, RestartRequest, StopRequest
+from overreach.types import Command, Frame, Twist
 from tests.processes import Driver, half, robot, until
 
+numbers = st.floats(allow_nan=False)
 
-@given(st.builds(Stick, st.integers(0, 2**53), st.integers(0, 2**53), st.integers(0, 2**31), st.booleans(),
-                 st.floats(allow_nan=False), st.floats(allow_nan=False)))  # fmt: skip
-def test_messages_come_back_as_they_went(stick: Stick) -> None:
+
+@given(st.builds(Command, st.integers(0, 2**53), st.integers(0, 2**53), st.integers(0, 2**31), st.booleans(),
+                 st.builds(Twist, *[numbers] * 6), st.sampled_from(Frame), st.none() | numbers, numbers))  # fmt: skip
+def test_messages_come_back_as_they_went(command: Command) -> None:
     """What is encoded decodes to the same."""
-    assert messages.decode_stick(messages.encode(stick)) == stick
+    assert messages.decode_command(messages.encode(command)) == command
+
+
+SPACE = planar().workspace
 
 
 @pytest.mark.parametrize(
@@ -48,42 +56,42 @@ def test_bad_endpoints(bad: str) -> None:
 def test_a_robot_side_end_to_end() -> None:
     """Over the real wire: welcome, arm, drive beyond the arm's reach, settings refused whole, stop, reset."""
     with robot() as (_, _, observer):
-        assert observer.welcome.robot == "planar"
+        assert (observer.welcome.name, observer.welcome.model) == ("planar", "planar")
         start = observer.now
         driver = Driver(observer.link)
         driver.arm()
         driver.drive(2.5)
-        assert observer.now.x_e - start.x_e > 0.7
+        assert observer.now.hand[0] - start.hand[0] > 0.7
         assert observer.now.mu > 0.9
         assert observer.now.ack <= driver.seq
 
-        answer = observer.link.request(Configure(Settings(law="paper", l_max=1.5)))
+        answer = observer.link.request(ConfigureRequest(Settings(Workspace(0.45, 1.5, -0.6, 0.6), Choice("paper"))))
         assert isinstance(answer, Refused)
         assert "reach" in answer.reason
-        answer = observer.link.request(Configure(Settings(law="papper")))
+        answer = observer.link.request(ConfigureRequest(Settings(SPACE, Choice("papper"))))
         assert isinstance(answer, Refused)
         assert "Did you mean 'paper'" in answer.reason
         raw = messages.encode({"type": "configure", "settings": {"frame": "hnad"}})
-        assert "hnad" in str(observer.link._ask(KEY_REQUEST, msgspec.Raw(raw), 2.0))
-        answer = observer.link.request(Configure(Settings(law="e" * 3000)))
+        assert "hnad" in str(observer.link._ask("request", msgspec.Raw(raw), 2.0))
+        answer = observer.link.request(ConfigureRequest(Settings(SPACE, Choice("e" * 3000))))
         assert isinstance(answer, Refused)
         assert len(answer.reason) < 200
-        assert observer.link.welcome(1.0).settings == Settings()
+        assert observer.link.welcome(1.0).settings == Settings(SPACE)
         until(lambda: observer.speed() == 0.0, what="rest")
-        wanted = Settings(law="paper", frame=Frame.POLAR, blend="tanh", alpha=80.0, speed_scale=0.5)
-        assert observer.link.request(Configure(wanted)) == Accepted()
+        wanted = Settings(SPACE, Choice("paper"), Choice("tanh", {"alpha": 80.0}), Frame.POLAR, 0.5)
+        assert observer.link.request(ConfigureRequest(wanted)) == Accepted()
         assert observer.link.welcome(1.0).settings == wanted
 
-        assert isinstance(observer.link.request(messages.Restart()), Refused)  # it is armed
-        assert observer.link.request(messages.Stop()) == Accepted()
+        assert isinstance(observer.link.request(RestartRequest()), Refused)  # it is armed
+        assert observer.link.request(StopRequest()) == Accepted()
         until(lambda: observer.now.stopped and observer.speed() == 0.0)
         driver.grip += 1
         driver.drive(0.3)
         assert observer.speed() == 0.0
-        assert isinstance(observer.link.request(messages.Arm(7)), Refused)
-        assert observer.link.request(messages.Reset()) == Accepted()
-        assert observer.link.request(messages.Restart()) == Accepted()
-        until(lambda: observer.now.x_e == pytest.approx(start.x_e))
+        assert isinstance(observer.link.request(ArmRequest(7)), Refused)
+        assert observer.link.request(ResetRequest()) == Accepted()
+        assert observer.link.request(RestartRequest()) == Accepted()
+        until(lambda: observer.now.hand == pytest.approx(start.hand))
 
 
 def test_a_rival_is_loaded_at_rest_and_then_driven() -> None:
@@ -92,18 +100,20 @@ def test_a_rival_is_loaded_at_rest_and_then_driven() -> None:
         driver = Driver(observer.link)
         driver.arm()
         driver.drive(0.5)
-        answer = observer.link.request(Configure(Settings(law="qp")))
+        answer = observer.link.request(ConfigureRequest(Settings(SPACE, Choice("qp"))))
         assert isinstance(answer, Refused)
         assert "Let go first: 'qp'" in answer.reason
         until(lambda: observer.speed() == 0.0, what="rest")
-        assert observer.link.request(Configure(Settings(law="qp"))) == Accepted()
+        assert observer.link.request(ConfigureRequest(Settings(SPACE, Choice("qp")))) == Accepted()
         start = observer.now
         driver.grip += 1
         driver.drive(1.0)
-        assert observer.now.x_e - start.x_e > 0.1
-        assert observer.now.x_b > start.x_b  # the QP drives the base inside the workspace
-        assert observer.link.request(Configure(Settings())) == Accepted()
-        assert observer.link.request(Configure(Settings(law="qp"))) == Accepted()  # now it is in memory
+        assert observer.now.hand[0] - start.hand[0] > 0.1
+        assert observer.now.pose.x > start.pose.x  # the QP drives the base inside the workspace
+        assert observer.link.request(ConfigureRequest(Settings(SPACE))) == Accepted()
+        assert (
+            observer.link.request(ConfigureRequest(Settings(SPACE, Choice("qp")))) == Accepted()
+        )  # now it is in memory
 
 
 def test_garbage_is_counted_and_dropped() -> None:
@@ -124,12 +134,12 @@ def test_garbage_is_counted_and_dropped() -> None:
                 messages.encode({"v_c": 1}),
                 messages.encode([1, 2]),
             ]
-            wrong = [messages.encode({"operator": 7, "seq": 1, "grip": 1, "held": "yes", "v_c": 0.4, "w_c": 0.0})]
+            wrong = [messages.encode({"operator": 7, "seq": 1, "grip": 1, "held": "yes", "twist": {"v_x": 0.4}})]
             for payload in junk + wrong:
-                raw.put(KEY_STICK, payload)
+                raw.put(key("planar", "command"), payload)
                 time.sleep(0.03)
-                for key in (KEY_REQUEST, KEY_HELLO):
-                    replies = list(raw.get(key, payload=payload, timeout=2.0))
+                for what in ("request", "hello"):
+                    replies = list(raw.get(key("planar", what), payload=payload, timeout=2.0))
                     assert len(replies) == 1
                     assert replies[0].ok is not None
                     assert isinstance(messages.decode_answer(replies[0].ok.payload.to_bytes()), Refused)
@@ -145,7 +155,7 @@ def test_garbage_is_counted_and_dropped() -> None:
 def test_another_protocol_is_refused_with_both_versions() -> None:
     """Halves of different protocols do not drive: the robot side says which versions met."""
     with robot() as (_, _, observer):
-        answer = observer.link._ask(KEY_HELLO, Hello(messages.PROTOCOL + 1, "9.9.9"), 2.0)
+        answer = observer.link._ask("hello", Hello(messages.PROTOCOL + 1, "9.9.9"), 2.0)["planar"]
         assert isinstance(answer, Refused)
         assert "9.9.9" in answer.reason
 

@@ -14,7 +14,7 @@ from overreach.model.planar import load_planar
 from overreach.robots.arc import arc
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import BaseTwist
+from tests.said import drives
 from tests.strategies import angles
 
 REST = (0.0, 0.0)
@@ -36,31 +36,31 @@ def test_steps_add_up(v: float, w: float, pieces: list[float]) -> None:
     """Reading the robot more often does not change where it goes: integration is exact, not Euler's."""
     once, often = KinematicRobot(), KinematicRobot()
     for robot in (once, often):
-        robot.write(BaseTwist(v, w), (0.3, -0.2), 0.0)
+        robot.write(drives(v, w), (0.3, -0.2), None, 0.0, 0.0)
     t = 0.0
     for piece in pieces:
         t += piece
         often.read(t)
     one, other = once.read(t), often.read(t)
     assert (one.x_b, one.y_b, one.theta_b) == pytest.approx((other.x_b, other.y_b, other.theta_b), abs=1e-12)
-    assert one.theta == pytest.approx(other.theta, abs=1e-12)
+    assert one.q == pytest.approx(other.q, abs=1e-12)
 
 
 def test_joints_stop_at_their_limits() -> None:
     """A joint that is driven into its limit stays there, and comes back from it."""
     robot = KinematicRobot()
-    robot.write(BaseTwist(), (3.0, 3.0), 0.0)
+    robot.write(drives(), (3.0, 3.0), None, 0.0, 0.0)
     ends = tuple(joint.upper for joint in robot.model.arm.channels)
-    assert robot.read(100.0).theta == ends
-    robot.write(BaseTwist(), (-1.0, -1.0), 100.0)
-    assert robot.read(101.0).theta == pytest.approx([limit - 1.0 for limit in ends])
+    assert robot.read(100.0).q == ends
+    robot.write(drives(), (-1.0, -1.0), None, 100.0, 100.0)
+    assert robot.read(101.0).q == pytest.approx([limit - 1.0 for limit in ends])
 
 
 @given(st.floats(0.01, 0.5), st.floats(0.02, 2.0))
 def test_lag_is_first_order(lag: float, t: float) -> None:
     """After a step the twist is 1 - exp(-t/tau) of it, and the base has gone the integral of that."""
     robot = KinematicRobot(imperfection=Imperfection(lag_s=lag))
-    robot.write(BaseTwist(0.4, 0.0), REST, 0.0)
+    robot.write(drives(0.4, 0.0), REST, None, 0.0, 0.0)
     state = robot.read(t)
     assert state.v_b == pytest.approx(0.4 * (1.0 - math.exp(-t / lag)), abs=1e-9)
     assert state.x_b == pytest.approx(0.4 * (t - lag * (1.0 - math.exp(-t / lag))), abs=1e-9)
@@ -70,7 +70,7 @@ def test_lag_is_first_order(lag: float, t: float) -> None:
 def test_delay_is_dead_time(delay: float, after: float) -> None:
     """Nothing moves for the dead time; then all moves as it would have without."""
     robot = KinematicRobot(imperfection=Imperfection(delay_s=delay))
-    robot.write(BaseTwist(0.4, 0.0), REST, 0.0)
+    robot.write(drives(0.4, 0.0), REST, None, 0.0, 0.0)
     assert robot.read(delay * 0.999).x_b == 0.0
     assert robot.read(delay + after).x_b == pytest.approx(0.4 * after, abs=1e-9)
 
@@ -78,17 +78,17 @@ def test_delay_is_dead_time(delay: float, after: float) -> None:
 def test_noise_is_seeded_and_as_wide_as_asked() -> None:
     """The same seed gives the same noise; its spread is the one asked for; the true state has none."""
     robots = [KinematicRobot(imperfection=Imperfection(noise=0.01, seed=7)) for _ in range(2)]
-    seen = [[robot.read(0.0).theta[0] for _ in range(4000)] for robot in robots]
+    seen = [[robot.read(0.0).q[0] for _ in range(4000)] for robot in robots]
     assert seen[0] == seen[1]
     assert statistics.stdev(seen[0]) == pytest.approx(0.01, rel=0.05)
-    assert robots[0].true.theta == KinematicRobot().true.theta
+    assert robots[0].true.q == KinematicRobot().true.q
 
 
 def test_restart_is_the_start() -> None:
     """A restarted robot is where it began, at rest."""
     robot = KinematicRobot(psi=0.3)
     start = robot.true
-    robot.write(BaseTwist(0.4, 0.2), (0.1, 0.1), 0.0)
+    robot.write(drives(0.4, 0.2), (0.1, 0.1), None, 0.0, 0.0)
     robot.read(3.0)
     robot.restart(0.0)
     assert robot.true == start

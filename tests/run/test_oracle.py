@@ -20,8 +20,9 @@ from overreach.model.planar import planar
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.law_alone import LawAlone
 from overreach.run.scenario import parse_scenario
-from overreach.run.simulate import Run, law_of, simulate, steps
-from overreach.types import BaseTwist, Frame, RobotState
+from overreach.run.simulate import Run, law_of, row_of, simulate, ticks
+from overreach.types import RobotState
+from tests.said import drives, push
 
 V = 0.4
 
@@ -106,14 +107,14 @@ def test_the_hand_moves_as_commanded_in_the_world(centred: bool) -> None:
 def check_one_step(l: float, psi: float, theta_b: float, turned: float, v_c: float, w_c: float, mount: Mount) -> None:
     dt = 1e-3
     model = planar(mount=mount)
-    controller = LawAlone(model, Exact(Tanh()), Frame.HAND)
+    controller = LawAlone(model, Exact(Tanh()))
     theta = inverse(l, psi, 0.5, 0.5, 1)
-    state = RobotState(0.0, 0.3, -0.2, theta_b, 0.0, 0.0, theta, (0.0, 0.0))
+    state = RobotState.flat(0.0, 0.3, -0.2, theta_b, 0.0, 0.0, theta, (0.0, 0.0))
     heading = controller.locate(state).theta_e + turned
     controller._theta_e = heading
-    step = controller.step(state, v_c, w_c, dt)
+    step = controller.decide(state, push(v_c, w_c), dt)
     robot = KinematicRobot(model, l=l, psi=psi)
-    robot.write(step.twist, step.dtheta, 0.0)
+    robot.write(step.base, step.joints, None, 0.0, 0.0)
     after = robot.read(dt)
 
     def hand(pose: tuple[float, float, float], joints: tuple[float, ...]) -> complex:
@@ -126,7 +127,7 @@ def check_one_step(l: float, psi: float, theta_b: float, turned: float, v_c: flo
 
     before_at, after_at = (0.0, 0.0, 0.0), (after.x_b, after.y_b, after.theta_b)
     # The simulated robot starts at the world's origin; the command is meant in a world turned by theta_b.
-    moved = (hand(after_at, after.theta) - hand(before_at, theta)) / dt
+    moved = (hand(after_at, after.q) - hand(before_at, theta)) / dt
     sweep = 1j * w_c * l * cmath.exp(1j * (psi + mount.yaw))
     want = v_c * cmath.exp(1j * (heading - theta_b)) + sweep
     assert step.scale == 1.0
@@ -197,7 +198,8 @@ def test_smoothstep_never_leaves_its_band(law: str, duration: float) -> None:
     text = f'[law]\nblend = "smoothstep"\n[command]\nduration = {duration}\ndt = 0.02\nsegments = [{", ".join(rows)}]'
     least_l = least_psi = math.inf
     scenario = parse_scenario(text)
-    for row, error, _ in steps(scenario, law_of(scenario, law)):
+    for tick, true in ticks(scenario, law_of(scenario, law)):
+        row, error = row_of(tick, true, scenario)
         least_l = min(least_l, row.l - 0.40, 0.90 - row.l)
         least_psi = min(least_psi, row.psi + 0.65, 0.65 - row.psi)
         if law == "exact":
@@ -245,17 +247,19 @@ def test_arm_makes_up_for_a_base_that_does_otherwise() -> None:
     model = planar()
     controller = LawAlone(model, Exact())
     theta = inverse(0.9, 0.3, 0.5, 0.5, 1)
-    state = RobotState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta, (0.0, 0.0))
-    first = controller.step(state, V, 0.0, 0.005)
-    slip = BaseTwist(-0.1, 0.05)
+    state = RobotState.flat(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta, (0.0, 0.0))
+    first = controller.decide(state, push(V, 0.0), 0.005)
+    slip = drives(-0.1, 0.05)
     dt = 1e-6  # a period ends exactly where it should, so that in a short one this moment's rates are seen
-    real = RobotState(0.005, 0.0, 0.0, 0.0, first.split.v_b + slip.v_b, first.split.w_b + slip.w_b, theta, first.dtheta)
-    second = controller.step(real, V, 0.0, dt)
-    twist = BaseTwist(second.split.v_b + slip.v_b, second.split.w_b + slip.w_b)
+    real = RobotState.flat(
+        0.005, 0.0, 0.0, 0.0, first.split.v_b + slip.v_x, first.split.w_b + slip.w_z, theta, first.joints
+    )
+    second = controller.decide(real, push(V, 0.0), dt)
+    twist = drives(second.split.v_b + slip.v_x, second.split.w_b + slip.w_z)
     h = 1e-6
-    after = (theta[0] + h * second.dtheta[0], theta[1] + h * second.dtheta[1])
+    after = (theta[0] + h * second.joints[0], theta[1] + h * second.joints[1])
     ends = []
-    for pose, joints in (((0.0, 0.0, 0.0), theta), ((h * twist.v_b, 0.0, h * twist.w_b), after)):
+    for pose, joints in (((0.0, 0.0, 0.0), theta), ((h * twist.v_x, 0.0, h * twist.w_z), after)):
         x = 0.5 * math.cos(joints[0]) + 0.5 * math.cos(joints[0] + joints[1])
         y = 0.5 * math.sin(joints[0]) + 0.5 * math.sin(joints[0] + joints[1])
         ends.append(complex(*hand_in_world(*pose, math.hypot(x, y), math.atan2(y, x), 0.0, 0.0)))

@@ -13,7 +13,8 @@ from overreach.model.model import Model
 from overreach.model.planar import planar
 from overreach.plugs import LAWS, law_plug, load_law, names
 from overreach.testing.law import check_law
-from overreach.types import Split, Verdict
+from overreach.types import Split
+from overreach.verdicts import Verdict
 
 
 @pytest.mark.parametrize("mount", [Mount(), Mount(0.15, -0.05, 0.2)], ids=["centred", "off"])

@@ -14,7 +14,8 @@ from overreach.model.model import Model
 from overreach.model.planar import planar
 from overreach.plugs import law_names, load_law
 from overreach.testing.whole_body import check_whole_body
-from overreach.types import BaseTwist, HandTwist, Plan, Verdict
+from overreach.types import HandTwist, Plan, Twist
+from overreach.verdicts import Verdict
 
 
 @pytest.mark.parametrize("mount", [Mount(), Mount(0.15, -0.05, 0.2)], ids=["centred", "off"])
@@ -35,7 +36,7 @@ class Broken(WholeBody, frozen=True):
     def planner(self, model: Model) -> Planner:
         inner = Weighted().planner(model)
 
-        def plan(chain: Chain, u: HandTwist, base: BaseTwist) -> Plan:
+        def plan(chain: Chain, u: HandTwist, base: Twist) -> Plan:
             right = inner(chain, u, base)
             return Plan(msgspec.structs.replace(right.split, **self.split), self.joints or right.joints)
 
@@ -56,7 +57,7 @@ class Drifting(WholeBody, frozen=True):
     def planner(self, model: Model) -> Planner:
         inner, calls = Weighted().planner(model), 0
 
-        def plan(chain: Chain, u: HandTwist, base: BaseTwist) -> Plan:
+        def plan(chain: Chain, u: HandTwist, base: Twist) -> Plan:
             nonlocal calls
             calls += 1
             right = inner(chain, u, base)

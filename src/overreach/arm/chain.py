@@ -10,7 +10,8 @@ from __future__ import annotations
 from typing import Protocol
 
 from overreach.arm.mount import Mount
-from overreach.types import Channel, Verdict
+from overreach.types import Channel
+from overreach.verdicts import Verdict
 
 Rest = tuple[float, float, float, float]
 """What the arm owes beyond the plane: v_z [m/s], then w_r, w_t, w_z [rad/s] in polar axes."""
@@ -89,7 +90,7 @@ class Arm(Protocol):
 
     @property
     def branch(self) -> tuple[tuple[float, float], ...]:
-        """Per joint the least and greatest position [rad] in which the posture is kept: the elbow stays on its side."""
+        """Per joint the least and greatest position [rad] in which the posture is kept, on its own branch."""
         ...
 
     @property

@@ -14,7 +14,8 @@ from overreach.arm.chain import Moved, Point, Rest
 from overreach.arm.mount import Mount
 from overreach.arm.polar import wrap
 from overreach.errors import SetupError
-from overreach.types import Channel, Record, Verdict
+from overreach.types import Channel, Record
+from overreach.verdicts import Verdict
 
 SINE_DAMPED = 0.15
 """Below this |sin theta_2| the inverse of the Jacobian is damped: within 9 degrees of straight or folded."""

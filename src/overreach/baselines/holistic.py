@@ -15,7 +15,7 @@ from overreach.extras import require
 from overreach.law.body import Planner, WholeBody
 from overreach.model.model import Model
 from overreach.parameters import choice
-from overreach.types import BaseTwist, HandTwist, Plan, Split
+from overreach.types import HandTwist, Plan, Split, Twist
 
 RATE_COST = 0.01
 """Cost of rates, as in the authors' published example: this for a joint, this over e for the base."""
@@ -44,6 +44,7 @@ class Holistic(WholeBody, frozen=True):
 
     name = "holistic"
     closes_residual = False
+    slow_to_load = True
     solver: Annotated[str, choice("QP solver", SOLVERS)] = "daqp"
 
     def __post_init__(self) -> None:
@@ -91,7 +92,7 @@ class Program:
                 lb[k] = ub[k] = 0.0
         return Q, C, lb, ub, A, numpy.array([wanted[k] for k in rows])
 
-    def plan(self, chain: Chain, u: HandTwist, _base: BaseTwist) -> Plan:
+    def plan(self, chain: Chain, u: HandTwist, _base: Twist) -> Plan:
         """Return the solution; see `Holistic.planner`."""
         if abs(u.u_r) < STILL and abs(u.u_t) < STILL:
             return Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))

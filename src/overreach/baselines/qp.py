@@ -17,7 +17,7 @@ from overreach.extras import require
 from overreach.law.body import Planner, WholeBody
 from overreach.model.model import Model
 from overreach.parameters import choice, number
-from overreach.types import BaseTwist, Frame, HandTwist, Plan
+from overreach.types import Frame, HandTwist, Plan, Twist
 
 L_LEAST = 1e-6
 """Shortest length [m] that is divided by."""
@@ -37,6 +37,7 @@ class PaperQP(WholeBody, frozen=True):
     name = "qp"
     frame = Frame.POLAR
     closes_residual = False
+    slow_to_load = True
     solver: Annotated[str, choice("QP solver", SOLVERS)] = "daqp"
     damping: Annotated[float, number("λ  damping", "", 0.001, 1.0, 0.001, above=0.0)] = 0.01
     settings: Mapping[str, Any] = {}
@@ -94,7 +95,7 @@ class Program:
         """Return the rates for a problem, or None: the solver's core alone."""
         return self._solve(P, q, self._least, self.q_max)
 
-    def plan(self, chain: Chain, u: HandTwist, _base: BaseTwist) -> Plan:
+    def plan(self, chain: Chain, u: HandTwist, _base: Twist) -> Plan:
         """Return the solution; see `PaperQP.planner`."""
         if not math.isfinite(u.u_r + u.u_t):
             return UNSOLVED

@@ -11,10 +11,13 @@ from overreach.extras import require
 from overreach.law.body import Planner, WholeBody
 from overreach.model.model import Model
 from overreach.parameters import number
-from overreach.types import BaseTwist, HandTwist, Plan
+from overreach.types import HandTwist, Plan, Twist
 
 NEAR = 0.01
 """Below det M = NEAR (trace M)^2 the inverse is damped, the more the nearer to singular (Nakamura, Hanafusa 1986)."""
+
+NEAR_IN_SPACE = 1e-4
+"""The same for more rows than two, of the least eigenvalue of M against its trace."""
 
 
 class Weighted(WholeBody, frozen=True):
@@ -33,7 +36,7 @@ class Weighted(WholeBody, frozen=True):
         mount, rows, w = model.mount, model.arm.rows, 1.0 / self.base_weight
         solve = _in_the_plane if rows == (0, 1) else _Rows(rows)
 
-        def plan(chain: Chain, u: HandTwist, _base: BaseTwist) -> Plan:
+        def plan(chain: Chain, u: HandTwist, _base: Twist) -> Plan:
             base, arm = base_rows(chain, mount), chain.jacobian()
             rates = solve(chain.l, base, arm, w, u)
             if not math.isfinite(sum(rates)):
@@ -82,12 +85,10 @@ class _Rows:
         cheap = numpy.ones(J.shape[1])
         cheap[:2] = w
         M = (J * cheap) @ J.T
-        # The damping of the plane, from its measure of nearness: det M against (trace M / n)^n.
-        n = len(rows)
         trace = numpy.trace(M)
-        near = numpy.linalg.det(M) / (NEAR * (trace / n) ** n)
-        if near < 1.0:
-            M += numpy.eye(n) * NEAR * trace * (1.0 - near) ** 2
+        room = numpy.linalg.eigvalsh(M)[0] / (NEAR_IN_SPACE * trace)
+        if room < 1.0:
+            M += numpy.eye(len(rows)) * NEAR_IN_SPACE * trace * (1.0 - room) ** 2
         y = numpy.linalg.solve(M, numpy.array(commanded(u))[rows])
         rates: list[float] = (cheap * (J.T @ y)).tolist()
         return rates

@@ -1,43 +1,48 @@
-"""What a controller costs in a loop: a drive of it, recorded, and gone through again and again."""
+"""What a pilot costs in a loop: a drive of it, recorded, and gone through again and again."""
 
 from __future__ import annotations
 
 from typing import final
 
-from overreach.control.controller import HandController
+from overreach.control.pilot import Pilot
+from overreach.control.tick import Tick
 from overreach.law.body import WholeBody
+from overreach.law.frame import of_two
+from overreach.model.planar import planar
+from overreach.requests import ArmRequest
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.scenario import load_scenario
-from overreach.types import RobotState, Step
+from overreach.types import Command, RobotState
 
 DT = 0.02
 """Period [s]: a few hundred of them see the arm alone, blending and the base alone."""
 
-Ticks = list[tuple[RobotState, float, float, float, float]]
+Inputs = tuple[RobotState, Command, float, float]
 
 
 @final
 class Replay:
-    """The controller of a recorded drive; `ticks` are the arguments of its steps, the first of which begins anew.
+    """The pilot of a recorded drive; `ticks` are the arguments of its ticks, the first of which begins anew.
 
-    A controller holds each state against what it asked for before, so that states out of their order are a fault, and
-    cost less than a step does.
+    A pilot holds each state against what it asked for before, so that states out of their order are a fault, and cost
+    less than a tick does.
     """
 
     def __init__(self, law: WholeBody, count: int) -> None:
+        self._law = law
         robot = KinematicRobot()
-        self.controller = HandController(robot.model, law)
         scenario = load_scenario("mixed")
-        self.ticks: Ticks = []
+        self.ticks: list[Inputs] = []
         for k in range(count):
             now = k * DT
-            command = scenario.command_at(now)
-            self.ticks.append((robot.read(now), command.v_c, command.w_c, DT, now))
-            step = self.step(*self.ticks[-1])
-            robot.write(step.twist, step.dtheta, now)
+            twist = of_two(law.frame, *scenario.command_at(now))
+            self.ticks.append((robot.read(now), Command(1, k + 1, 1, True, twist, law.frame), now, DT))
+            tick = self.tick(*self.ticks[-1])
+            robot.write(tick.base, tick.joints, tick.gripper, now, now + DT)
 
-    def step(self, state: RobotState, v_c: float, w_c: float, dt: float, now: float) -> Step:
-        """Do one step of the drive; the first begins it anew."""
-        if now == 0.0:
-            self.controller.restart()
-        return self.controller.step(state, v_c, w_c, dt, now)
+    def tick(self, state: RobotState, command: Command, now: float, dt: float) -> Tick:
+        """Do one tick of the drive; the first begins it anew."""
+        if command.seq == 1:
+            self.pilot = Pilot(planar(), self._law)
+            self.pilot.ask(ArmRequest(1), now)
+        return self.pilot.tick(state, command, now, dt)

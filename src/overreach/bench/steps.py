@@ -18,11 +18,11 @@ from overreach.fast.step import planar_step
 from overreach.law.authority import exact, paper
 from overreach.law.blend import Smoothstep, Tanh
 from overreach.law.body import WholeBody
-from overreach.law.frame import hand
+from overreach.law.frame import FRAMES, meant, of_two
 from overreach.law.laws import Exact, constants
 from overreach.model.planar import planar
 from overreach.run.simulate import Row, simulate
-from overreach.types import BaseTwist, HandTwist
+from overreach.types import Frame, HandTwist, Twist
 
 SLOW_EVERY = 5
 """Solvers that take half a millisecond run in every fifth round."""
@@ -54,7 +54,9 @@ def repeated(candidates: list[Candidate], samples: int) -> list[Candidate]:
 
 def _polar(row: Row) -> tuple[float, float, float, float]:
     """Return (l, psi, u_r, u_t) of a row, the command meant in the frame `hand`."""
-    return row.l, row.psi, *hand(row.v_c, row.w_c, row.l, row.psi, row.theta_b, row.theta_e)
+    twist = of_two(Frame.HAND, row.v_c, row.w_c)
+    u = meant(FRAMES[Frame.HAND], twist, row.l, row.psi, row.theta_b, row.theta_e)
+    return row.l, row.psi, u.u_r, u.u_t
 
 
 def laws(rows: list[Row], fast: bool) -> list[Candidate]:
@@ -68,7 +70,7 @@ def laws(rows: list[Row], fast: bool) -> list[Candidate]:
     others: list[WholeBody] = [Separate(), Weighted(), PaperQP(solver=DIRECT), Holistic(solver=DIRECT)]
     model = planar()
     plans = [
-        (model.arm.at(row.theta, model.mount), HandTwist(u_r, u_t), BaseTwist(row.v_b, row.w_b))
+        (model.arm.at(row.theta, model.mount), HandTwist(u_r, u_t), Twist(row.v_b, w_z=row.w_b))
         for row, (_, _, u_r, u_t) in zip(rows, polar, strict=True)
     ]
     plain += [Candidate(f"law {law.name}, plain", law.planner(model), plans) for law in others]
@@ -92,7 +94,7 @@ def steps(rows: list[Row], fast: bool) -> list[Candidate]:
         found.append(Candidate(COMPILED, compile_step(), hand_states))
         found.append(Candidate("step exact, compiled: empty call", empty_call(), hand_states))
     drive = Replay(Exact(), len(rows))
-    found.append(Candidate("step exact, in the loop: limits, guard, records and all", drive.step, drive.ticks))
+    found.append(Candidate("step exact, in the loop: gate, limits, guard, record and all", drive.tick, drive.ticks))
     steep = Tanh()
     polar_states = [(*row.theta, row.v_c, row.w_c) for row in rows]
     his = (steep.rise, *constants(robot, steep), *robot.arm.links)

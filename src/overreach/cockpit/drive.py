@@ -10,7 +10,7 @@ import socket
 import subprocess
 import sys
 import webbrowser
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 
@@ -73,11 +73,11 @@ def _exit_on_signals() -> None:
 
 
 @contextmanager
-def robot_process(robot: str, rate: float) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+def robot_process(robot: str, rate: float, law: Sequence[str] = ()) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
     """Run the robot side as a process of its own; yield its endpoint and it. It ends with the block."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "overreach", "robot", robot, "--listen", endpoint]
-    command += ["--rate", str(rate), "--parent", str(os.getpid())]
+    command += ["--rate", str(rate), "--parent", str(os.getpid()), *law]
     # A session of its own: Ctrl-C reaches the operator side alone, which then ends this one in order.
     process = subprocess.Popen(command, start_new_session=True)
     try:
@@ -91,35 +91,50 @@ def robot_process(robot: str, rate: float) -> Iterator[tuple[str, subprocess.Pop
             process.wait()
 
 
-def run_drive(robot: str, host: str, port: int | None, rate: float, browser: bool) -> None:
-    """Run both halves until Ctrl-C or SIGTERM, or until one of them ends."""
-    from overreach.plugs import load_model
-    from overreach.robot_side import check_rate
+def run_drive(
+    robot: str, host: str, port: int | None, rate: float, browser: bool, law: str = "exact", changes: Sequence[str] = ()
+) -> None:
+    """Run both halves until Ctrl-C or SIGTERM, or until one of them ends.
 
-    load_model(robot)
+    changes: parameters of the law, NAME=VALUE.
+    """
+    from overreach.parameters import assignments
+    from overreach.plugs import load_law
+    from overreach.robot_side.process import check_rate
+    from overreach.robots.load import check_robot_name
+
+    check_robot_name(robot)
     check_rate(rate)
+    load_law(law, assignments(changes))
     _exit_on_signals()
-    with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate) as (endpoint, process):
+    given = ["--law", law, *(["--set", *changes] if changes else [])]
+    with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate, given) as (endpoint, process):
         _operate(endpoint, page, host, browser, lambda: process.poll() is not None)
         if process.poll() is not None:
             raise LinkError(f"the robot side has ended by itself (exit code {process.returncode}); so has the page")
 
 
-def run_cockpit(connect: str, host: str, port: int | None, browser: bool) -> None:
-    """Run the operator side alone, for a robot side that is already there."""
+def run_cockpit(connect: str, host: str, port: int | None, browser: bool, robot: str = "") -> None:
+    """Run the operator side alone, for a robot side that is already there, of that name where there are several."""
+    from overreach.link.messages import check_name
+
     endpoint = check_endpoint(connect)
+    if robot:
+        check_name(robot)
     _exit_on_signals()
     with contextlib.closing(bind_page(host, port)) as page:
-        _operate(endpoint, page, host, browser, lambda: False)
+        _operate(endpoint, page, host, browser, lambda: False, robot)
 
 
-def _operate(endpoint: str, page: socket.socket, host: str, browser: bool, lost: Callable[[], bool]) -> None:
+def _operate(
+    endpoint: str, page: socket.socket, host: str, browser: bool, lost: Callable[[], bool], robot: str = ""
+) -> None:
     # Imported while the robot side starts: the page's library takes the longest.
     from overreach.cockpit.relay import Relay
     from overreach.cockpit.server import serve
     from overreach.link.operator_end import OperatorEnd
 
-    link = OperatorEnd(endpoint)
+    link = OperatorEnd(endpoint, robot)
     try:
         relay = Relay(link, link.welcome(ROBOT_WAIT_S, lost))
         shown = "127.0.0.1" if host in ("0.0.0.0", "::") else host

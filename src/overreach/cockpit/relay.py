@@ -1,4 +1,4 @@
-"""Between the pages and the robot side: sticks and questions up, the newest state down."""
+"""Between the pages and the robot side: commands and questions up, the newest state down."""
 
 from __future__ import annotations
 
@@ -14,22 +14,10 @@ from fastapi import WebSocket, WebSocketDisconnect
 
 from overreach.cockpit import wire
 from overreach.errors import LinkError
-from overreach.link.messages import (
-    Accepted,
-    Arm,
-    Configure,
-    Disarm,
-    Refused,
-    Request,
-    Reset,
-    Restart,
-    Settings,
-    State,
-    Stop,
-    Welcome,
-)
+from overreach.link.messages import Accepted, AnyRequest, ConfigureRequest, Refused, Settings, State, Welcome
 from overreach.link.operator_end import OperatorEnd
-from overreach.types import Stick
+from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
+from overreach.types import Command
 
 SAID_MOST = 32
 """Answers that wait for a page that does not read; older ones are dropped."""
@@ -85,6 +73,7 @@ class Relay:
     def __init__(self, link: OperatorEnd, welcome: Welcome) -> None:
         self.welcome = welcome
         self.settings = welcome.settings
+        self.scene = welcome.scene
         self.on_settings: set[Callable[[Settings], None]] = set()
         """Called, on the event loop, with settings that have come into force."""
         self._link = link
@@ -125,21 +114,21 @@ class Relay:
         except LinkError:
             self._revision = -1  # not known: the next state asks again
             return
-        self.settings = welcome.settings
+        self.settings, self.scene = welcome.settings, welcome.scene
         for page in self._pages:
-            page.say(wire.encode(wire.SettingsToPage(self.settings)))
+            page.say(wire.encode(wire.SettingsToPage(self.settings, self.scene)))
         for told in list(self.on_settings):
             told(self.settings)
 
-    async def ask(self, request: Request) -> Accepted | Refused:
+    async def ask(self, request: AnyRequest) -> Accepted | Refused:
         """Ask the robot side, without holding up the pages. Stop has a thread of its own: it waits for nobody."""
-        if isinstance(request, Stop):
+        if isinstance(request, StopRequest):
             return await asyncio.get_running_loop().run_in_executor(self._stopper, self._link.request, request)
         return await asyncio.to_thread(self._link.request, request)
 
     async def configure(self, settings: Settings) -> Accepted | Refused:
         """Ask for other settings; every page hears of them when they are in force."""
-        answer = await self.ask(Configure(settings))
+        answer = await self.ask(ConfigureRequest(settings))
         if isinstance(answer, Accepted):
             self.settings = settings
         return answer
@@ -147,7 +136,7 @@ class Relay:
     async def serve(self, socket: WebSocket) -> None:
         """Talk with one page until it goes; then its robot is let go of."""
         page = Page(socket)
-        page.say(wire.encode(wire.Greeting(page.operator, self.welcome, self.settings)))
+        page.say(wire.encode(wire.Greeting(page.operator, self.welcome, self.settings, self.scene)))
         self._pages.add(page)
         sender = asyncio.create_task(page.send_forever())
         try:
@@ -158,8 +147,8 @@ class Relay:
         finally:
             self._pages.discard(page)
             sender.cancel()
-            self._link.send(Stick(page.operator, page.seq + 1, page.grip, False, 0.0, 0.0))
-            self._spawn(self.ask(Disarm(page.operator)))
+            self._link.send(Command(page.operator, page.seq + 1, page.grip, False))
+            self._spawn(self.ask(DisarmRequest(page.operator)))
             with contextlib.suppress(Exception, asyncio.CancelledError):
                 await sender
 
@@ -172,25 +161,25 @@ class Relay:
         except msgspec.DecodeError as error:
             page.say(wire.encode(wire.AnswerToPage(-1, False, f"Not understood: {error}")))
             return
-        if isinstance(message, wire.StickFromPage):
+        if isinstance(message, wire.CommandFromPage):
             page.seq, page.grip = message.seq, message.grip
-            self._link.send(Stick(page.operator, message.seq, message.grip, message.held, message.v_c, message.w_c))
+            self._link.send(Command(page.operator, *msgspec.structs.astuple(message)))  # untouched
         else:
             self._spawn(self._answer(page, message))
 
     async def _answer(self, page: Page, question: wire.AskFromPage) -> None:
-        requests: dict[str, Request] = {
-            "stop": Stop(),
-            "reset": Reset(),
-            "arm": Arm(page.operator, page.grip),
-            "disarm": Disarm(page.operator),
-            "restart": Restart(),
+        requests: dict[str, AnyRequest] = {
+            "stop": StopRequest(),
+            "reset": ResetRequest(),
+            "arm": ArmRequest(page.operator, page.grip),
+            "disarm": DisarmRequest(page.operator),
+            "restart": RestartRequest(),
         }
         request = requests.get(question.what)
         answer: Accepted | Refused
         if request is None:
             answer = Refused(f"Unknown button {question.what!r}.")
-        elif isinstance(request, Stop):
+        elif isinstance(request, StopRequest):
             answer = await self.ask(request)
         elif page.asked >= ASKED_MOST:
             answer = Refused("Too many questions at once.")

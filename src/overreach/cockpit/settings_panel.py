@@ -1,4 +1,4 @@
-"""The settings: NiceGUI's controls, one record behind them, the robot side as the judge."""
+"""The settings: NiceGUI's controls made from the plugs' own descriptions, the robot side as the judge."""
 
 from __future__ import annotations
 
@@ -9,13 +9,17 @@ import msgspec
 from nicegui import ui
 
 from overreach.cockpit.relay import Relay
-from overreach.errors import OverreachError
-from overreach.link.messages import Accepted, Refused, Settings
-from overreach.plugs import BLENDS, blends_in, law_names, law_plug, names
+from overreach.link.messages import Accepted, Choice, Plug, Refused, Settings
+from overreach.parameters import Parameter
 from overreach.types import Frame
 
 THROTTLE_S = 0.1
 """A slider that is dragged asks for new settings at most this often."""
+EDGE_M = 0.05
+"""The workspace is offered this far [m] short of the ends of the arm's reach."""
+NONE = Plug("", ())
+
+Change = Callable[[Settings], Settings]
 
 
 @final
@@ -24,50 +28,91 @@ class SettingsPanel:
 
     def __init__(self, relay: Relay) -> None:
         self._relay = relay
-        self._shown = relay.settings
         self._quiet = False
         self._asking = False
-        self._wanted: dict[str, Any] = {}
+        self._wanted: list[Change] = []
+        welcome, shown = relay.welcome, relay.settings
+        self._own: dict[tuple[str, str], dict[str, Any]] = {}
+        """The controls of each law's and each blend's own parameters."""
+        self._groups: dict[tuple[str, str], ui.element] = {}
         with ui.element("section").classes("card").props('id=settings aria-label="Settings"'):
             ui.html("<h2>Settings</h2>", sanitize=False)
-            self._law = self._select("law", "Law", self._laws(self._shown.law))
+            self._law = self._select("law", "Law", self._laws(shown))
+            self._parameters("law", welcome.laws)
             self._frame = self._toggle("frame", "Command frame", [frame.value for frame in Frame])
-            self._blend = self._toggle(
-                "blend",
-                "Blend",
-                names(BLENDS),
+            self._blend = self._toggle("blend", "Blend", list(welcome.blends))
+            self._parameters("blend", welcome.blends)
+            self._speed = self._slider(
+                "speed_scale", "Speed", 0.05, 1.0, 0.05, "×", shown.speed_scale, self._speed_changed
             )
-            self._speed = self._slider("speed_scale", "Speed", 0.05, 1.0, 0.05, "×")
-            self._tanh = ui.element("div").classes("group")
-            with self._tanh:
-                self._alpha = self._slider("alpha", "α  sharpness in l", 5.0, 200.0, 1.0, "1/m")
-                self._beta = self._slider("beta", "β  sharpness in ψ", 5.0, 200.0, 1.0, "1/rad")
-            self._smooth = ui.element("div").classes("group")
-            with self._smooth:
-                self._q_l = self._slider("q_l", "Q  width in l", 0.01, 0.3, 0.01, "m")
-                self._q_psi = self._slider("q_psi", "Q  width in ψ", 0.01, 0.6, 0.01, "rad")
-            reach = sum(relay.welcome.links)
-            least = abs(relay.welcome.links[0] - relay.welcome.links[1]) + 0.05
-            self._length = self._range("l_min", "l_max", "L  workspace in l", least, reach - 0.05, 0.01, "m")
+            least, most = welcome.reach
+            ends = (least + EDGE_M, most - EDGE_M)
+            self._length = self._range("l_min", "l_max", "L  workspace in l", *ends, 0.01, "m")
             self._bearing = self._range("psi_min", "psi_max", "Ψ  workspace in ψ", -1.5, 1.5, 0.05, "rad")
             ui.button("Defaults", on_click=self._defaults).props('flat dense no-caps id="defaults"')
         self.show(relay.settings)
 
     @staticmethod
-    def _laws(in_force: str) -> list[str]:
-        """Return the laws to choose from: those installed here, and the one in force, which only the robot may have."""
-        return sorted({*law_names(), in_force})
+    def _speed_changed(value: float) -> Change:
+        return lambda settings: _with(settings, speed_scale=value)
+
+    def _laws(self, settings: Settings) -> list[str]:
+        """Return the laws to choose from: those that the robot side has."""
+        return sorted({*self._relay.welcome.laws, settings.law.name})
+
+    def _parameters(self, kind: str, plugs: dict[str, Plug]) -> None:
+        """Make the controls of each plug's own parameters, in a group that is shown with it."""
+        for name, plug in plugs.items():
+            controls = self._own[kind, name] = {}
+            if not plug.parameters:
+                continue
+            with ui.element("div").classes("group") as group:
+                for one in plug.parameters:
+                    controls[one.name] = self._parameter(kind, name, one)
+            self._groups[kind, name] = group
+
+    def _parameter(self, kind: str, plug: str, one: Parameter) -> Any:
+        """Return the control of one parameter."""
+
+        def changed(value: Any) -> Change:
+            def change(settings: Settings) -> Settings:
+                chosen: Choice = getattr(settings, kind)
+                own = chosen.parameters if chosen.name == plug else {}
+                other: Settings = _with(settings, **{kind: Choice(plug, {**own, one.name: value})})
+                return other
+
+            return change
+
+        if one.choices:
+            select = ui.select(list(one.choices), label=one.title, value=one.default)
+            select.props(f'outlined dense options-dense id="set-{one.name}"')
+            select.on_value_change(self._handler(changed))
+            return select
+        value = float(one.default)
+        return self._slider(one.name, one.title, one.low, one.high, one.step, one.unit, value, changed)
 
     def _select(self, field: str, label: str, options: list[str]) -> ui.select:
-        return ui.select(options, label=label, value=getattr(self._shown, field), on_change=self._handler(field)).props(
-            f'outlined dense options-dense id="set-{field}"'
+        select = ui.select(options, label=label, value=self._relay.settings.law.name)
+        select.on_value_change(
+            self._handler(lambda value: lambda settings: _with(settings, law=self._choice("law", value)))
         )
+        return select.props(f'outlined dense options-dense id="set-{field}"')
 
     def _toggle(self, field: str, label: str, options: list[str]) -> ui.toggle:
         ui.label(label).classes("line")
-        return ui.toggle(options, value=getattr(self._shown, field), on_change=self._handler(field)).props(
-            f'unelevated no-caps spread id="set-{field}" aria-label="{label}"'
-        )
+        value = getattr(self._relay.settings, field)
+        toggle = ui.toggle(options, value=value if isinstance(value, str) else value.name)
+
+        def changed(value: str) -> Change:
+            chosen: Any = Frame(value) if field == "frame" else self._choice(field, value)
+            return lambda settings: _with(settings, **{field: chosen})
+
+        toggle.on_value_change(self._handler(changed))
+        return toggle.props(f'unelevated no-caps spread id="set-{field}" aria-label="{label}"')
+
+    def _choice(self, kind: str, name: str) -> Choice:
+        """Return a plug as it is chosen anew: with its parameters as they stand here."""
+        return Choice(name, {key: control.value for key, control in self._own.get((kind, name), {}).items()})
 
     def _line(self, label: str, unit: str) -> ui.label:
         with ui.element("div").classes("line"):
@@ -76,48 +121,54 @@ class SettingsPanel:
             ui.label(unit).classes("unit")
         return value
 
-    def _slider(self, field: str, label: str, least: float, most: float, step: float, unit: str) -> ui.slider:
+    def _slider(
+        self, field: str, label: str, least: float, most: float, step: float, unit: str, shown: float, changed: Any
+    ) -> ui.slider:
         value = self._line(label, unit)
-        slider = ui.slider(min=least, max=most, step=step, value=getattr(self._shown, field))
+        slider = ui.slider(min=least, max=most, step=step, value=shown)
         slider.props(f'id="set-{field}" aria-label="{label}"')
         value.bind_text_from(slider, "value", backward=lambda number: f"{number:g}")
-        slider.on("update:model-value", lambda: self._ask({field: slider.value}), throttle=THROTTLE_S)
+        slider.on("update:model-value", lambda: self._ask(changed(slider.value)), throttle=THROTTLE_S)
         return slider
 
     def _range(self, low: str, high: str, label: str, least: float, most: float, step: float, unit: str) -> ui.range:
         value = self._line(label, unit)
-        both = ui.range(
-            min=least,
-            max=most,
-            step=step,
-            value={"min": getattr(self._shown, low), "max": getattr(self._shown, high)},
-        )
+        space = self._relay.settings.workspace
+        both = ui.range(min=least, max=most, step=step, value={"min": getattr(space, low), "max": getattr(space, high)})
         both.props(f'id="set-{low}" aria-label="{label}"')
         value.bind_text_from(both, "value", backward=lambda pair: f"{pair['min']:g} to {pair['max']:g}")
-        both.on(
-            "update:model-value",
-            lambda: self._ask({low: both.value["min"], high: both.value["max"]}),
-            throttle=THROTTLE_S,
-        )
+
+        def change(settings: Settings) -> Settings:
+            ends = {low: both.value["min"], high: both.value["max"]}
+            changed: Settings = _with(settings, workspace=_with(settings.workspace, **ends))
+            return changed
+
+        both.on("update:model-value", lambda: self._ask(change), throttle=THROTTLE_S)
         return both
 
-    def _handler(self, field: str) -> Callable[[Any], Any]:
-        async def changed(event: Any) -> None:
+    def _handler(self, changed: Callable[[Any], Change]) -> Callable[[Any], Any]:
+        async def handle(event: Any) -> None:
             if not self._quiet:
-                await self._ask({field: Frame(event.value) if field == "frame" else event.value})
+                await self._ask(changed(event.value))
 
-        return changed
+        return handle
 
-    async def _ask(self, changes: dict[str, Any]) -> None:
-        """Ask for the settings in force with `changes`. One question at a time; what comes meanwhile is added up."""
-        self._wanted |= changes
+    async def _ask(self, change: Change) -> None:
+        """Ask for the settings in force, changed. One question at a time; what comes meanwhile is added up."""
+        self._wanted.append(change)
         if self._asking:
             return
         self._asking = True
         try:
             while self._wanted:
-                wanted = msgspec.structs.replace(self._relay.settings, **self._wanted)
-                self._wanted = {}
+                changes, self._wanted = self._wanted, []
+                wanted = self._relay.settings
+                try:
+                    for one in changes:
+                        wanted = one(wanted)
+                except ValueError as error:  # a workspace that is none
+                    ui.notify(str(error), type="warning", position="top")
+                    break
                 if wanted != self._relay.settings:
                     self._tell(await self._relay.configure(wanted))
         finally:
@@ -137,25 +188,24 @@ class SettingsPanel:
         if self._asking:
             return
         self._quiet = True
-        self._shown = settings
-        self._law.set_options(self._laws(settings.law), value=settings.law)
+        welcome, space = self._relay.welcome, settings.workspace
+        self._law.set_options(self._laws(settings), value=settings.law.name)
         self._frame.value = settings.frame
-        self._blend.value = settings.blend
-        for slider, value in (
-            (self._speed, settings.speed_scale),
-            (self._alpha, settings.alpha),
-            (self._beta, settings.beta),
-            (self._q_l, settings.q_l),
-            (self._q_psi, settings.q_psi),
-        ):
-            slider.value = value
-        self._length.value = {"min": settings.l_min, "max": settings.l_max}
-        self._bearing.value = {"min": settings.psi_min, "max": settings.psi_max}
-        try:
-            blending = blends_in(law_plug(settings.law))
-        except (OverreachError, ImportError):  # a law that only the robot's side has
-            blending = True
-        self._tanh.visible = settings.blend == "tanh" and blending
-        self._smooth.visible = settings.blend == "smoothstep" and blending
-        self._blend.set_enabled(blending)
+        self._blend.value = settings.blend.name
+        self._speed.value = settings.speed_scale
+        self._length.value = {"min": space.l_min, "max": space.l_max}
+        self._bearing.value = {"min": space.psi_min, "max": space.psi_max}
+        blends = welcome.laws.get(settings.law.name, NONE).blends
+        self._blend.set_enabled(blends)
+        for (kind, name), group in self._groups.items():
+            chosen: Choice = getattr(settings, kind)
+            group.visible = chosen.name == name and (kind == "law" or blends)
+            if chosen.name != name:
+                continue
+            plugs = welcome.laws if kind == "law" else welcome.blends
+            for one in plugs[name].parameters:
+                self._own[kind, name][one.name].value = chosen.parameters.get(one.name, one.default)
         self._quiet = False
+
+
+_with: Any = msgspec.structs.replace

@@ -9,7 +9,8 @@ from typing import Annotated
 
 import msgspec
 
-from overreach.link.messages import Settings, State, Welcome
+from overreach.link.messages import Scene, Settings, State, Welcome
+from overreach.types import Frame, Twist
 
 LONGEST = 4096
 """Longest message [characters] that is taken from a page."""
@@ -19,14 +20,16 @@ Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 """A number that counts up, as exact in JavaScript as here."""
 
 
-class StickFromPage(msgspec.Struct, frozen=True, tag="stick", forbid_unknown_fields=True):
-    """See `overreach.types.Stick`."""
+class CommandFromPage(msgspec.Struct, frozen=True, tag="command", forbid_unknown_fields=True):
+    """See `overreach.types.Command`."""
 
     seq: Count
     grip: Count
     held: bool
-    v_c: float
-    w_c: float
+    twist: Twist
+    frame: Frame
+    gripper: float | None = None
+    seen: float = 0.0
 
 
 class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=True):
@@ -36,15 +39,16 @@ class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=
     what: str
 
 
-FromPage = StickFromPage | AskFromPage
+FromPage = CommandFromPage | AskFromPage
 
 
 class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
-    """First word to a page: its operator number, the robot, and the settings in force."""
+    """First word to a page: its operator number, the robot, and the settings in force with how they look."""
 
     operator: int
     robot: Welcome
     settings: Settings
+    scene: Scene
 
 
 class StateToPage(msgspec.Struct, frozen=True, tag="state"):
@@ -62,9 +66,10 @@ class AnswerToPage(msgspec.Struct, frozen=True, tag="answer"):
 
 
 class SettingsToPage(msgspec.Struct, frozen=True, tag="settings"):
-    """The settings have changed."""
+    """The settings have changed, and how they look."""
 
     settings: Settings
+    scene: Scene
 
 
 decode_from_page = msgspec.json.Decoder(FromPage).decode

@@ -53,6 +53,7 @@ class Asked:
         elif t > self._t:
             fade = math.exp((self._t - t) / LAG_S)
             self._t = t
-            self.lagged = tuple(
-                [goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)]
-            )
+            if self.lagged != self.in_force:
+                self.lagged = tuple(
+                    [goal + (rate - goal) * fade for goal, rate in zip(self.in_force, self.lagged, strict=True)]
+                )

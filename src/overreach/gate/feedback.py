@@ -5,8 +5,8 @@ state --> finite? in range? newer? moved when asked? as fast as asked? --> belie
 
 from __future__ import annotations
 
-import cmath
 import math
+from cmath import isfinite
 from collections.abc import Sequence
 from typing import final
 
@@ -83,9 +83,8 @@ class Feedback:
         """
         if not math.isfinite(t):
             return "The robot's feedback has no finite time."
-        for channel, position, rate in zip(self._ranges, positions, rates, strict=True):
-            k, least, most, fastest = channel
-            if not (least <= position.real <= most and abs(rate) <= fastest and cmath.isfinite(position)):
+        for (k, least, most, fastest), position, rate in zip(self._ranges, positions, rates, strict=True):
+            if not (least <= position.real <= most and -fastest <= rate <= fastest and isfinite(position)):
                 return self._why_not(k, position, rate)
         if t <= self.stamp:
             if now - self._came_at > FROZEN_S:
@@ -102,11 +101,10 @@ class Feedback:
     def _follows(self, t: float, passed: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
         """Return which channel does not do what was asked of it, and how; or ""."""
         asked, lagged = self.asked.in_force, self.asked.lagged
-        for k, tolerance, slowest, owed in self._thresholds:
-            at_once, slowly, position, rate = asked[k], lagged[k], positions[k], rates[k]
-            low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
-            wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
-            if low - wide <= rate <= high + wide:
+        for (k, tolerance, slowest, owed), at_once, slowly, position, rate in zip(
+            self._thresholds, asked, lagged, positions, rates, strict=True
+        ):
+            if at_once - tolerance <= rate <= at_once + tolerance or self._near(tolerance, at_once, slowly, rate):
                 self._off_since[k] = math.inf
             else:
                 self._off_since[k] = min(self._off_since[k], t)
@@ -123,9 +121,16 @@ class Feedback:
                     return f"The robot's feedback is frozen: {moves} does not change, though it was asked to."
         return ""
 
+    @staticmethod
+    def _near(tolerance: float, at_once: float, slowly: float, rate: float) -> bool:
+        """Say whether a rate lies between two requests, give or take what is tolerated."""
+        low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
+        wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
+        return low - wide <= rate <= high + wide
+
     def _why_not(self, k: int, position: Position, rate: float) -> str:
         channel = self._channels[k]
-        if not cmath.isfinite(position):
+        if not isfinite(position):
             return f"The robot's feedback of {channel.moves} is not finite."
         if not math.isfinite(rate):
             return f"The robot's feedback of {channel.name} is not finite."

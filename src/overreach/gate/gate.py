@@ -9,10 +9,16 @@ from __future__ import annotations
 import math
 from typing import final
 
+import msgspec
+from msgspec.structs import astuple
+
 from overreach.errors import SetupError
 from overreach.gate.limits import Limits, limit_speed, slew
 from overreach.gate.stop import StopLatch
-from overreach.types import Motion, Record, Stick, Verdict, weightier
+from overreach.types import Command, Frame, Record, Twist
+from overreach.verdicts import Motion, Verdict, weightier
+
+_with = msgspec.structs.replace
 
 STALE_S = 0.2
 """Without a fresh command for this long [s], the command ramps to zero."""
@@ -26,35 +32,51 @@ NEVER = (0, 0)
 """Number of the last message and the last press of an operator who has not been heard."""
 
 
-class Gated(Record, frozen=True):
-    """What the gate lets through: v_c, w_c, their scale by the speed limit, whether anything may move, verdict."""
+STILL = Twist()
+PLANE = frozenset(("v_x", "v_y", "w_z"))
+"""The parts of a twist that every robot's hand can do."""
 
-    v_c: float
-    w_c: float
+
+class Gated(Record, frozen=True):
+    """What the gate lets through.
+
+    twist, in `frame`; gripper: its wanted opening, None where it is to stay; scale: by the speed limit; motion: whether
+    anything may move; verdict, with a reason where the verdict needs one.
+    """
+
+    twist: Twist
+    frame: Frame
+    gripper: float | None
     scale: float
     motion: Motion
     verdict: Verdict
+    reason: str = ""
 
 
 @final
 class Gate:
     """Holds what was accepted last and ramps the command. One `tick` a period.
 
-    limits: of the command; speed_scale: part of `limits.v_c`, `limits.w_c` that the full stick asks for.
+    limits: of the command; speed_scale: part of `limits.v_c`, `limits.w_c` that the full stick asks for; obeys: the
+    parts of a twist, and "gripper", that the robot has: a command for another is refused, with the reason.
     """
 
-    def __init__(self, limits: Limits | None = None, speed_scale: float = 1.0) -> None:
+    def __init__(self, limits: Limits | None = None, speed_scale: float = 1.0, obeys: frozenset[str] = PLANE) -> None:
         self.limits = limits or Limits()
+        self._lacks = [name for name in Twist.__struct_fields__ if name not in obeys]
+        self._grips = "gripper" in obeys
         self.latch = StopLatch()
         self.speed_scale = speed_scale
         self.refused = 0
-        self._stick: Stick | None = None
+        self._said: Command | None = None
         self._fresh_at = -math.inf
         self._seen: dict[int, tuple[int, int]] = {}
         self._refusal = Verdict.OUT_OF_ORDER
         self._refused_at = -math.inf
-        self._v_c = 0.0
-        self._w_c = 0.0
+        self._reason = ""
+        self._twist = self._wished = self._goal = STILL
+        self._scale = 1.0
+        self._frame = Frame.HAND
 
     def set_speed_scale(self, value: float) -> None:
         """Set the speed scale; raises SetupError unless 0 < value <= 1."""
@@ -65,12 +87,17 @@ class Gate:
     @property
     def resting(self) -> bool:
         """Say whether the command has come down to zero."""
-        return self._v_c == 0.0 and self._w_c == 0.0
+        return self._twist == STILL
 
     @property
     def seq(self) -> int:
         """Number of the last accepted message, 0 before the first."""
-        return self._stick.seq if self._stick else 0
+        return self._said.seq if self._said else 0
+
+    @property
+    def seen(self) -> float:
+        """What the operator had before them when they sent it: the time of a state [s], 0 before the first."""
+        return self._said.seen if self._said else 0.0
 
     def arm(self, operator: int, grip: int, now: float) -> Verdict | None:
         """Arm for `operator` at `now` [s]; return why not, or None.
@@ -86,78 +113,109 @@ class Gate:
         if latch.armed and latch.operator != operator and not (self.resting and now - self._fresh_at > LOST_S):
             return Verdict.OTHER_OPERATOR
         if latch.operator != operator:
-            self._stick = None
+            self._said = None
         _, pressed = self._seen.get(operator, NEVER)
         latch.arm(operator, max(grip, pressed))
         return None
 
-    def accept(self, stick: Stick, now: float) -> Verdict | None:
-        """Take a message that arrived at `now` [s]; return why it is refused, or None."""
+    def accept(self, said: Command, now: float) -> Verdict | None:
+        """Take a message that arrived at `now` [s]; return why it is refused, or None.
+
+        A command for a motion that the robot does not have counts as one for no motion.
+        """
         latch = self.latch
-        seq, grip = self._seen.get(stick.operator, NEVER)
+        seq, grip = self._seen.get(said.operator, NEVER)
         refusal: Verdict | None = None
-        if not (math.isfinite(stick.v_c) and math.isfinite(stick.w_c)):
+        if not math.isfinite(sum(astuple(said.twist)) + (said.gripper or 0.0) + said.seen):
             refusal = Verdict.NOT_FINITE
-        elif stick.seq <= seq:
+        elif said.seq <= seq:
             refusal = Verdict.OUT_OF_ORDER
         else:
             # Remembered for refused operators too: their old messages and presses stay old when they arm.
-            self._seen.pop(stick.operator, None)
-            self._seen[stick.operator] = (stick.seq, max(grip, stick.grip))
+            self._seen.pop(said.operator, None)
+            self._seen[said.operator] = (said.seq, max(grip, said.grip))
             if len(self._seen) > OPERATORS_KEPT:
                 del self._seen[next(iter(self._seen))]
-            if latch.armed and stick.operator != latch.operator:
+            if latch.armed and said.operator != latch.operator:
                 refusal = Verdict.OTHER_OPERATOR
         if refusal:
-            self.refused += 1
-            self._refusal = refusal
-            self._refused_at = now
-            return refusal
+            return self._refuse(refusal, now)
         if latch.armed and self._was_lost(now):
             # Lost while held: neither that press counts nor one that was made while nothing came through.
-            latch.spend(stick.grip)
-        self._stick = stick
+            latch.spend(said.grip)
+        self._said = said
         self._fresh_at = now
+        if lacking := self._lacking(said):
+            self._said = _with(said, twist=STILL, gripper=None)
+            return self._refuse(Verdict.NO_SUCH_MOTION, now, f"It has no {', '.join(lacking)}.")
         return None
 
-    def _was_lost(self, now: float) -> bool:
-        return self._stick is not None and self._stick.held and now - self._fresh_at > LOST_S
+    def _refuse(self, refusal: Verdict, now: float, reason: str = "") -> Verdict:
+        self.refused += 1
+        self._refusal, self._refused_at, self._reason = refusal, now, reason
+        return refusal
 
-    def _wish(self, now: float) -> tuple[float, float, Verdict]:
+    def _lacking(self, said: Command) -> list[str]:
+        """Return what is asked for and not there."""
+        twist = said.twist
+        if twist == self._twist and said.gripper is None:  # as it is going already
+            return []
+        asked = [name for name in self._lacks if getattr(twist, name) != 0.0]
+        if said.gripper is not None and not self._grips:
+            asked.append("gripper")
+        return asked
+
+    def _was_lost(self, now: float) -> bool:
+        return self._said is not None and self._said.held and now - self._fresh_at > LOST_S
+
+    def _wish(self, now: float) -> tuple[Twist, Verdict]:
         """Return the command that is asked for and allowed at `now`, before speed limits and ramps."""
-        latch, stick = self.latch, self._stick
+        latch, said = self.latch, self._said
         if latch.fault:
-            return 0.0, 0.0, Verdict.FAULT
+            return STILL, Verdict.FAULT
         if latch.stopped:
-            return 0.0, 0.0, Verdict.STOPPED
+            return STILL, Verdict.STOPPED
         if not latch.armed:
-            return 0.0, 0.0, Verdict.DISARMED
-        if stick is None or stick.operator != latch.operator or not stick.held:
-            return 0.0, 0.0, Verdict.RELEASED
+            return STILL, Verdict.DISARMED
+        if said is None or said.operator != latch.operator or not said.held:
+            return STILL, Verdict.RELEASED
         age = now - self._fresh_at
         if age > LOST_S:
-            latch.spend(stick.grip)
-            return 0.0, 0.0, Verdict.LOST
+            latch.spend(said.grip)
+            return STILL, Verdict.LOST
         if age > STALE_S:
             if self.resting:
-                latch.spend(stick.grip)
-            return 0.0, 0.0, Verdict.STALE
-        if stick.grip <= latch.spent_grip:
-            return 0.0, 0.0, Verdict.REGRIP
-        return stick.v_c, stick.w_c, Verdict.MOVING
+                latch.spend(said.grip)
+            return STILL, Verdict.STALE
+        if said.frame is not self._frame:
+            if not self.resting:  # what the stick means does not change in motion
+                latch.spend(said.grip)
+                return STILL, Verdict.REGRIP
+            self._frame = said.frame
+        if said.grip <= latch.spent_grip:
+            return STILL, Verdict.REGRIP
+        return said.twist, Verdict.MOVING
 
     def tick(self, now: float, dt: float) -> Gated:
         """Return the command for the period `dt` [s] that begins at `now` [s]."""
-        v_c, w_c, verdict = self._wish(now)
-        wished = v_c != 0.0 or w_c != 0.0
-        v_c, w_c, scale = limit_speed(v_c * self.speed_scale, w_c * self.speed_scale, self.limits)
-        self._v_c, self._w_c, ramping = slew((self._v_c, self._w_c), (v_c, w_c), self.limits, dt)
+        wish, verdict = self._wish(now)
+        wished = wish != STILL
+        if self.speed_scale != 1.0:
+            wish = Twist(*[part * self.speed_scale for part in astuple(wish)])
+        if wish != self._wished:
+            self._wished = wish
+            self._goal, self._scale = limit_speed(wish, self.limits)
+        goal, scale = self._goal, self._scale
+        self._twist, ramping = slew(self._twist, goal, self.limits, dt)
+        gripper = None
         if verdict is Verdict.MOVING:
+            gripper = self._said.gripper if self._said else None
             if scale < 1.0:
                 verdict = Verdict.SPEED
             elif ramping:
                 verdict = Verdict.ACCELERATION
-        if now - self._refused_at < TOLD_S:
-            verdict = weightier(self._refusal, verdict)
+        reason = ""
+        if now - self._refused_at < TOLD_S and (told := weightier(self._refusal, verdict)) is not verdict:
+            verdict, reason = told, self._reason
         motion = Motion.NONE if self.resting else Motion.ALLOWED if wished else Motion.RAMPING
-        return Gated(self._v_c, self._w_c, scale, motion, verdict)
+        return Gated(self._twist, self._frame, gripper, scale, motion, verdict, reason)

@@ -10,7 +10,9 @@ from collections.abc import Sequence
 from operator import truediv
 from typing import final
 
-from overreach.types import Channel, Motion
+from overreach.gate.limits import within
+from overreach.types import Channel
+from overreach.verdicts import Motion
 
 SLACK = 1e-6
 """Excess over a bound, in parts of the change in one period, that is taken for rounding and taken away."""
@@ -31,6 +33,8 @@ class Guard:
         self._changes = tuple(channel.change_max for channel in self.channels)
         self._mosts = tuple(channel.rate_max for channel in self.channels)
         self.stop_s = max(ramp_s, *(channel.rate_max / channel.change_max for channel in self.channels))
+        self._dt = 0.0
+        self._steps: tuple[float, ...] = ()
         self.fault = ""
         """Why the robot is to stand still until `reset`; empty where it is not."""
         self.restart()
@@ -75,6 +79,10 @@ class Guard:
 
     def _bounded(self, wanted: Sequence[float], dt: float) -> tuple[float, ...] | None:
         """Return `wanted`, less what is rounding; None, with the fault latched, where it is not bounded."""
+        if dt != self._dt:
+            self._dt, self._steps = dt, tuple([change * dt for change in self._changes])
+        if within(wanted, self.written, self._mosts, self._steps):
+            return tuple(wanted)
         out: list[float] = []
         for rate, was, most, change_max in zip(wanted, self.written, self._mosts, self._changes, strict=True):
             change = change_max * dt

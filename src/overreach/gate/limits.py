@@ -4,24 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from math import hypot
+
+from msgspec.structs import astuple
 
 from overreach.errors import SetupError
-from overreach.types import Record, Verdict
+from overreach.types import Record, Twist
+from overreach.verdicts import Verdict
 
 SLACK = 1e-9
 """Relative slack below which a limit does not count as reached."""
 
 
 class Limits(Record, frozen=True):
-    """Limits on the operator's command: v_c [m/s], w_c [rad/s], and their rates dv_c [m/s^2], dw_c [rad/s^2].
+    """Limits on the operator's command, and on its rates.
 
-    In the frames `base` and `world`, w_c and dw_c limit the second component in [m/s] and [m/s^2].
+    v_c [m/s]: of the hand's speed along the ground; v_z [m/s]: up and down; w_c [rad/s]: of its turning, about any
+    axis; dv_c, dv_z [m/s^2], dw_c [rad/s^2]: of their changes.
     """
 
     v_c: float = 0.4
     w_c: float = 0.4
     dv_c: float = 2.5
     dw_c: float = 2.5
+    v_z: float = 0.1
+    dv_z: float = 0.625
 
     def __post_init__(self) -> None:
         for name in self.__struct_fields__:
@@ -32,28 +39,36 @@ class Limits(Record, frozen=True):
     @property
     def ramp_s(self) -> float:
         """The longest ramp of the command to zero [s]."""
-        return max(self.v_c / self.dv_c, self.w_c / self.dw_c)
+        return max(self.v_c / self.dv_c, self.w_c / self.dw_c, self.v_z / self.dv_z)
 
 
-def limit_speed(v_c: float, w_c: float, limits: Limits) -> tuple[float, float, float]:
-    """Return (v_c, w_c, scale): the command shrunk, both parts alike, until neither passes its limit."""
-    worst = max(abs(v_c) / limits.v_c, abs(w_c) / limits.w_c)
+def _worst(twist: Twist, along: float, up: float, turning: float) -> float:
+    """Return how many times its bounds a twist is, in the part that is farthest beyond."""
+    v_x, v_y, v_z, w_x, w_y, w_z = astuple(twist)
+    worst: float = max(hypot(v_x, v_y) / along, abs(v_z) / up, hypot(w_x, w_y, w_z) / turning)
+    return worst
+
+
+def limit_speed(twist: Twist, limits: Limits) -> tuple[Twist, float]:
+    """Return (twist, scale): the command shrunk, all parts alike, until none passes its limit."""
+    worst = _worst(twist, limits.v_c, limits.v_z, limits.w_c)
     if worst <= 1.0 + SLACK:
-        return v_c, w_c, 1.0
-    return v_c / worst, w_c / worst, 1.0 / worst
+        return twist, 1.0
+    return Twist(*[part / worst for part in astuple(twist)]), 1.0 / worst
 
 
-def slew(now: tuple[float, float], goal: tuple[float, float], limits: Limits, dt: float) -> tuple[float, float, bool]:
-    """Return (v_c, w_c, limited): the command moved from `now` towards `goal`, straight, for `dt` [s].
+def slew(now: Twist, goal: Twist, limits: Limits, dt: float) -> tuple[Twist, bool]:
+    """Return (twist, limited): the command moved from `now` towards `goal`, straight, for `dt` [s].
 
-    Both parts take the same fraction of the way, so that a ramp to zero keeps the direction.
+    All parts take the same fraction of the way, so that a ramp to zero keeps the direction.
     """
-    dv = goal[0] - now[0]
-    dw = goal[1] - now[1]
-    worst = max(abs(dv) / (limits.dv_c * dt), abs(dw) / (limits.dw_c * dt))
+    if now == goal:
+        return goal, False
+    way = Twist(*[to - at for to, at in zip(astuple(goal), astuple(now), strict=True)])
+    worst = _worst(way, limits.dv_c * dt, limits.dv_z * dt, limits.dw_c * dt)
     if worst <= 1.0 + SLACK:
-        return goal[0], goal[1], False
-    return now[0] + dv / worst, now[1] + dw / worst, True
+        return goal, False
+    return Twist(*[at + part / worst for at, part in zip(astuple(now), astuple(way), strict=True)]), True
 
 
 def feasible_scale(
@@ -90,6 +105,14 @@ def feasible_scale(
         high = 0.5 * (low + high)
         verdict = Verdict.ACCELERATION
     return max(0.0, min(scale, high)), verdict
+
+
+def within(rates: Sequence[float], was: Sequence[float], most: Sequence[float], change: Sequence[float]) -> bool:
+    """Say whether every rate keeps its limit, and its change since `was` as well. False for nan."""
+    for rate, before, top, step in zip(rates, was, most, change, strict=True):
+        if not (-top <= rate <= top and before - step <= rate <= before + step):
+            return False
+    return True
 
 
 def clamp_change(wanted: float, happening: float, change: float) -> float:

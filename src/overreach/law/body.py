@@ -10,10 +10,11 @@ from overreach.arm.chain import Chain
 from overreach.errors import LONGEST_NAME
 from overreach.model.model import Model
 from overreach.parameters import Parameters
-from overreach.types import FLOATS, BaseTwist, Frame, HandTwist, Plan, Split, Verdict
+from overreach.types import FLOATS, Frame, HandTwist, Plan, Split, Twist
+from overreach.verdicts import Verdict
 
-Planner = Callable[[Chain, HandTwist, BaseTwist], Plan]
-"""(arm at its joints, what is commanded, the base twist that is happening) -> plan. Pure; raises nothing."""
+Planner = Callable[[Chain, HandTwist, Twist], Plan]
+"""(arm at its joints, what is commanded, the base's motion as it is) -> plan. Pure; raises nothing."""
 
 
 class WholeBody(Parameters, frozen=True):
@@ -23,6 +24,9 @@ class WholeBody(Parameters, frozen=True):
     """The command frame that suits it, used unless another is asked for."""
     closes_residual: ClassVar[bool] = True
     """Whether the arm is to make up for what the base does otherwise than asked (lag, slip, limits)."""
+
+    slow_to_load: ClassVar[bool] = False
+    """Whether the first of its kind brings libraries along for a while: such a law is first chosen at rest."""
 
     def planner(self, model: Model) -> Planner:
         """Return what plans for `model`."""

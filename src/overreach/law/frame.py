@@ -1,7 +1,8 @@
-"""What the operator's (v_c, w_c) means: command frames, each a pure function to polar components.
+"""What the operator's twist means: command frames, and from each of them to polar axes at the hand.
 
-Each takes v_c, w_c, the length l [m], psi_d (the EE's bearing in the base frame [rad]), theta_b and
-theta_e (headings of base and hand in the world [rad]) and returns (u_r, u_t) [m/s].
+A frame says along which axes the twist's x and y are meant: its x axis lies at an angle from r, the direction outward
+from the shoulder. w_z sweeps the hand about the shoulder, in every frame:
+    u = R(angle) v + w_z z x (p_e - p_shoulder)
 """
 
 from __future__ import annotations
@@ -9,62 +10,33 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import cos, sin
 
-from overreach.types import Frame
+from overreach.types import Frame, HandTwist, Twist
 
-CommandFrame = Callable[[float, float, float, float, float, float], tuple[float, float]]
+CommandFrame = Callable[[float, float, float], float]
+"""(psi_d, theta_b, theta_e): bearing of the hand in the base frame, headings of base and hand [rad] -> angle [rad]."""
 
 
-def hand(
-    v_c: float,
-    w_c: float,
-    l: float,
-    psi_d: float,
-    theta_b: float,
-    theta_e: float,
-) -> tuple[float, float]:
-    """v_c goes where the hand points, w_c sweeps it about the shoulder and turns it (dtheta_e = w_c).
+def hand(psi_d: float, theta_b: float, theta_e: float) -> float:
+    """X goes where the hand points, w_z sweeps it about the shoulder and turns it (dtheta_e = w_z).
 
     This is the paper's unicycle (2), made true in rigid-body kinematics: straight stays straight.
     """
-    delta = theta_e - theta_b - psi_d
-    return v_c * cos(delta), v_c * sin(delta) + w_c * l
+    return theta_e - theta_b - psi_d
 
 
-def polar(
-    v_c: float,
-    w_c: float,
-    l: float,
-    psi_d: float,
-    theta_b: float,
-    theta_e: float,
-) -> tuple[float, float]:
-    """v_c outward along r, w_c about the shoulder: the paper's text, literally."""
-    return v_c, w_c * l
+def polar(psi_d: float, theta_b: float, theta_e: float) -> float:
+    """X outward along r, w_z about the shoulder: the paper's text, literally."""
+    return 0.0
 
 
-def base(
-    v_c: float,
-    w_c: float,
-    l: float,
-    psi_d: float,
-    theta_b: float,
-    theta_e: float,
-) -> tuple[float, float]:
-    """v_c [m/s] along the base's x axis, w_c [m/s] along its y axis."""
-    c, s = cos(psi_d), sin(psi_d)
-    return v_c * c + w_c * s, w_c * c - v_c * s
+def base(psi_d: float, theta_b: float, theta_e: float) -> float:
+    """X along the base's x axis, y along its y axis."""
+    return -psi_d
 
 
-def world(
-    v_c: float,
-    w_c: float,
-    l: float,
-    psi_d: float,
-    theta_b: float,
-    theta_e: float,
-) -> tuple[float, float]:
-    """v_c [m/s] along the world's x axis, w_c [m/s] along its y axis."""
-    return base(v_c, w_c, l, psi_d + theta_b, 0.0, 0.0)
+def world(psi_d: float, theta_b: float, theta_e: float) -> float:
+    """X along the world's x axis, y along its y axis."""
+    return -(psi_d + theta_b)
 
 
 FRAMES: dict[Frame, CommandFrame] = {
@@ -75,6 +47,29 @@ FRAMES: dict[Frame, CommandFrame] = {
 }
 
 
-def heading_rate(frame: Frame, w_c: float) -> float | None:
+def meant(angle: CommandFrame, twist: Twist, l: float, psi_d: float, theta_b: float, theta_e: float) -> HandTwist:
+    """Return what a twist, in the frame of that angle, means for the hand at (l [m], psi_d [rad])."""
+    turn = angle(psi_d, theta_b, theta_e)
+    c, s = cos(turn), sin(turn)
+    v_x, v_y, w_x, w_y = twist.v_x, twist.v_y, twist.w_x, twist.w_y
+    u_r, u_t = v_x * c, v_x * s
+    if v_y != 0.0:
+        u_r -= v_y * s
+        u_t += v_y * c
+    return HandTwist(u_r, u_t + twist.w_z * l, twist.v_z, w_x * c - w_y * s, w_x * s + w_y * c, twist.w_z)
+
+
+def heading_rate(frame: Frame, w_z: float) -> float | None:
     """Return dtheta_e [rad/s] where the hand has a heading of its own, else None (it follows r)."""
-    return w_c if frame is Frame.HAND else None
+    return w_z if frame is Frame.HAND else None
+
+
+def axes(frame: Frame) -> tuple[str, str]:
+    """Return the components of the twist that a stick of two axes, forward and leftward, means in `frame`."""
+    return ("v_x", "w_z") if frame in (Frame.HAND, Frame.POLAR) else ("v_x", "v_y")
+
+
+def of_two(frame: Frame, forward: float, left: float) -> Twist:
+    """Return the twist of a stick of two axes, in m/s and m/s or rad/s; see `axes`."""
+    _, second = axes(frame)
+    return Twist(forward, w_z=left) if second == "w_z" else Twist(forward, left)

@@ -10,7 +10,7 @@ from overreach.law.blend import Blend, Smoothstep, Step, Tanh
 from overreach.law.body import Planner, WholeBody
 from overreach.law.lead import lead
 from overreach.model.model import Model
-from overreach.types import BaseTwist, Frame, HandTwist, Plan, Split
+from overreach.types import Frame, HandTwist, Plan, Split, Twist
 
 Share = Callable[[float, float, float, float], Split]
 """(l [m], psi [rad], u_r, u_t [m/s]) -> shares of the EE's velocity, by base and arm. Pure; raises nothing; every
@@ -32,11 +32,11 @@ class Law(WholeBody, frozen=True):
         share = self.bind(model)
         lag, mount = model.base.lag, model.mount.three
 
-        def plan(chain: Chain, u: HandTwist, _base: BaseTwist) -> Plan:
+        def plan(chain: Chain, u: HandTwist, _base: Twist) -> Plan:
             return Plan(share(chain.l, chain.psi, u.u_r, u.u_t))
 
-        def plan_ahead(chain: Chain, u: HandTwist, base: BaseTwist) -> Plan:
-            return Plan(share(*lead(chain.l, chain.psi, u.u_r, u.u_t, base.v_b, base.w_b, lag, mount)))
+        def plan_ahead(chain: Chain, u: HandTwist, base: Twist) -> Plan:
+            return Plan(share(*lead(chain.l, chain.psi, u.u_r, u.u_t, base.v_x, base.w_z, lag, mount)))
 
         return plan_ahead if lag > 0.0 and self.closes_residual else plan
 

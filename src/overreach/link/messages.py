@@ -1,79 +1,96 @@
 """Every message between the two halves, defined once. MessagePack on the wire; units as in `types`.
 
-operator side                         robot side
-    Stick  ---- overreach/stick ------->   latest wins
-    Request --- overreach/request ----->   each answered: Accepted or Refused
-    Hello ----- overreach/hello ------->   answered: Welcome or Refused
-          <---- overreach/state --------   State, latest wins
+operator side                              robot side
+    Command ---- overreach/NAME/command -->   latest wins
+    Request ---- overreach/NAME/request -->   each answered: Accepted or Refused
+    Hello ------ overreach/NAME/hello ---->   answered: Welcome or Refused
+            <--- overreach/NAME/state -----   State, latest wins
 """
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 
-from overreach.types import Frame, Stick
+from overreach.arm.chain import Point
+from overreach.errors import SetupError
+from overreach.gate.limits import Limits
+from overreach.model.workspace import Workspace
+from overreach.parameters import Parameter
+from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
+from overreach.types import BaseTwist, Command, Frame, Pose, Twist
 
-PROTOCOL = 1
-"""Raised when a message changes its meaning; both halves must have the same."""
+PROTOCOL = 2
+"""Raised when a message changes its meaning; both halves must have the same (a test holds that)."""
 
 LONGEST = 4096
 """Longest message [bytes] that the robot side looks at."""
 
-KEY_STICK = "overreach/stick"
-KEY_REQUEST = "overreach/request"
-KEY_HELLO = "overreach/hello"
-KEY_STATE = "overreach/state"
+NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
+"""What a robot may be called in a network."""
+ANY = "*"
+
+
+def key(robot: str, what: str) -> str:
+    """Return the key of command, request, hello or state of the robot of that name."""
+    return f"overreach/{robot}/{what}"
+
+
+def check_name(name: str) -> str:
+    """Return a robot's name in the network; raises SetupError where it cannot be one."""
+    if not NAME.fullmatch(name):
+        raise SetupError(f"a robot's name must be 1 to 40 of A-Z a-z 0-9 _ -, got {name!r}")
+    return name
+
+
+class Choice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A plug by its name, with those of its parameters that are not as usual."""
+
+    name: str
+    parameters: dict[str, float | str] = {}
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What an operator may change while the robot runs. L in m, Psi in rad, alpha in 1/m, beta in 1/rad."""
+    """What an operator may change while the robot runs.
 
-    law: str = "exact"
-    blend: str = "smoothstep"
+    law: a law or whole body; blend: for the laws that have one to be chosen; frame: in which the pages command;
+    workspace: where the arm works alone; speed_scale: what the full stick asks for, of the limits.
+    """
+
+    workspace: Workspace
+    law: Choice = Choice("exact")
+    blend: Choice = Choice("smoothstep")
     frame: Frame = Frame.HAND
-    alpha: float = 50.0
-    beta: float = 50.0
-    q_l: float = 0.1
-    q_psi: float = 0.1
-    l_min: float = 0.45
-    l_max: float = 0.85
-    psi_min: float = -0.6
-    psi_max: float = 0.6
     speed_scale: float = 1.0
 
 
-class Stop(msgspec.Struct, frozen=True, tag="stop"):
-    """Latch the stop."""
+class Plug(msgspec.Struct, frozen=True):
+    """What there is to choose: a summary, the parameters, and whether it has a blend to be chosen."""
+
+    summary: str
+    parameters: tuple[Parameter, ...]
+    blends: bool = False
 
 
-class Reset(msgspec.Struct, frozen=True, tag="reset"):
-    """Release the latch of the stop; moves nothing, arms nothing."""
+class Scene(msgspec.Struct, frozen=True):
+    """What is drawn about the base: closed lines through (x, y) [m] in the base frame.
+
+    footprint: length and width of the base [m]; workspace: where the arm works alone; bands: where base and arm blend.
+    """
+
+    footprint: tuple[float, float]
+    workspace: tuple[tuple[float, float], ...]
+    bands: tuple[tuple[tuple[float, float], ...], ...]
 
 
-class Arm(msgspec.Struct, frozen=True, tag="arm"):
-    """Arm for this operator; its presses of the dead-man up to number `grip` do not count."""
-
-    operator: int
-    grip: int = 0
-
-
-class Disarm(msgspec.Struct, frozen=True, tag="disarm"):
-    """Disarm, if it is this operator who armed."""
-
-    operator: int
-
-
-class Restart(msgspec.Struct, frozen=True, tag="restart"):
-    """Put a simulated robot back to its start; refused unless it is disarmed and at rest."""
-
-
-class Configure(msgspec.Struct, frozen=True, tag="configure"):
+class ConfigureRequest(msgspec.Struct, frozen=True, tag="configure"):
     """Use these settings, all or none."""
 
     settings: Settings
 
 
-Request = Stop | Reset | Arm | Disarm | Restart | Configure
+AnyRequest = StopRequest | ResetRequest | ArmRequest | DisarmRequest | RestartRequest | ConfigureRequest
 
 
 class Accepted(msgspec.Struct, frozen=True, tag="accepted"):
@@ -94,22 +111,30 @@ class Hello(msgspec.Struct, frozen=True):
 
 
 class Welcome(msgspec.Struct, frozen=True, tag="welcome"):
-    """The robot side's answer: what it is. reach [m], links [m], footprint [m], rate [Hz]."""
+    """The robot side's answer: what it is.
+
+    name: in the network; model: which robot; rate [Hz]; limits: of the command, where a stick is at its end; reach: of
+    the arm [m]; obeys: the parts of a twist, and "gripper", that it does; axes: by frame, what a stick of two axes,
+    forward and leftward, means; stop_time [s]: the longest from a lost signal to standstill; laws, blends: what there
+    is to choose from, by name.
+    """
 
     protocol: int
     version: str
-    robot: str
+    name: str
+    model: str
     rate: float
-    links: tuple[float, float]
-    shoulder: tuple[float, float]
-    mount_yaw: float
-    footprint: tuple[float, float]
-    v_max: float
-    w_max: float
+    limits: Limits
+    reach: tuple[float, float]
+    obeys: tuple[str, ...]
+    axes: dict[str, tuple[str, str]]
     stop_time: float
     simulated: bool
+    laws: dict[str, Plug]
+    blends: dict[str, Plug]
     settings: Settings
     defaults: Settings
+    scene: Scene
     revision: int
 
 
@@ -119,55 +144,54 @@ Answer = Accepted | Refused | Welcome
 class State(msgspec.Struct, frozen=True, gc=False):
     """What the robot side tells, at least 50 times a second.
 
-    t [s] of the robot side's monotonic clock; tick: number of the period; ack: seq of the last accepted
-    Stick of `operator`; verdict, word, sentence, look and scale: as in `types`; stopped: whether only a reset leads
-    on; v_c, w_c: the command that got through the gate; the rest as in `types` (state at t, rates from t on).
-    late_p50, late_p99, late_max [us]: the loop's lateness over the last second. revision: counts the changes of
-    the settings.
+    t [s] of the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq of
+    the last accepted command of theirs, and the `t` of the state that they had before them when they sent it. verdict,
+    word, sentence, look and scale: as in `verdicts`; stopped: whether only a reset leads on. twist, in `frame`, and
+    gripper: the command that got through the gate. polar, mu, sigma, v_m, w_m and base: as in `types`; pose: of the
+    base; joints [rad, m]; hand: its place in the world [m], velocity: its true velocity there [m/s]; links: the arm as
+    a line through points in the world [m]. State at t, rates from t on. late_p50, late_p99, late_max [us]: the loop's
+    lateness over the last second. revision: counts the changes of the settings.
     """
 
     t: float
     tick: int
     operator: int
     ack: int
+    seen: float
     verdict: str
     word: str
     sentence: str
+    look: str
     scale: float
     armed: bool
     stopped: bool
-    v_c: float
-    w_c: float
+    twist: Twist
+    frame: Frame
+    gripper: float | None
     l: float
     psi: float
     theta_e: float
     mu: float
     sigma: float
-    v_b: float
-    w_b: float
     v_m: float
     w_m: float
-    x_b: float
-    y_b: float
-    theta_b: float
-    theta_1: float
-    theta_2: float
-    x_e: float
-    y_e: float
+    base: BaseTwist
+    pose: Pose
+    joints: tuple[float, ...]
+    hand: Point
+    velocity: Point
+    links: tuple[Point, ...]
     late_p50: float
     late_p99: float
     late_max: float
     overruns: int
     refused: int
     revision: int
-    width_l: float
-    width_psi: float
-    look: str = "warn"
 
 
 encode = msgspec.msgpack.Encoder().encode
-decode_stick = msgspec.msgpack.Decoder(Stick).decode
-decode_request = msgspec.msgpack.Decoder(Request).decode
+decode_command = msgspec.msgpack.Decoder(Command).decode
+decode_request = msgspec.msgpack.Decoder(AnyRequest).decode
 decode_hello = msgspec.msgpack.Decoder(Hello).decode
 decode_answer = msgspec.msgpack.Decoder(Answer).decode
 decode_state = msgspec.msgpack.Decoder(State).decode

@@ -12,24 +12,22 @@ from overreach.clock import MonotonicClock
 from overreach.errors import LinkError
 from overreach.link.endpoint import open_session
 from overreach.link.messages import (
-    KEY_HELLO,
-    KEY_REQUEST,
-    KEY_STATE,
-    KEY_STICK,
+    ANY,
     PROTOCOL,
     Accepted,
     Answer,
-    Configure,
+    AnyRequest,
+    ConfigureRequest,
     Hello,
     Refused,
-    Request,
     State,
     Welcome,
     decode_answer,
     decode_state,
     encode,
+    key,
 )
-from overreach.types import Stick
+from overreach.types import Command
 
 ANSWER_S = 1.0
 """How long an answer is waited for [s]."""
@@ -40,17 +38,16 @@ AGAIN_S = 0.02
 
 @final
 class OperatorEnd:
-    """A session to one robot side. Callbacks come on zenoh's thread."""
+    """A session to one robot side. Callbacks come on zenoh's thread.
 
-    def __init__(self, connect: str) -> None:
+    robot: its name in the network; "" where there is but one: `welcome` finds it.
+    """
+
+    def __init__(self, connect: str, robot: str = "") -> None:
         self.endpoint = connect
+        self.robot = robot
         self._session = open_session(connect=connect)
-        self._sticks = self._session.declare_publisher(
-            KEY_STICK,
-            congestion_control=zenoh.CongestionControl.DROP,
-            priority=zenoh.Priority.INTERACTIVE_HIGH,
-            express=True,
-        )
+        self._commands: zenoh.Publisher | None = None
         self._states: zenoh.Subscriber[None] | None = None
 
     def subscribe(self, on_state: Callable[[State], None]) -> None:
@@ -59,29 +56,39 @@ class OperatorEnd:
         def receive(sample: zenoh.Sample) -> None:
             on_state(decode_state(sample.payload.to_bytes()))
 
-        self._states = self._session.declare_subscriber(KEY_STATE, receive)
+        self._states = self._session.declare_subscriber(key(self.robot, "state"), receive)
 
-    def send(self, stick: Stick) -> None:
-        """Send a stick; dropped where the network is full (the next one says the same and more)."""
-        self._sticks.put(encode(stick))
+    def send(self, command: Command) -> None:
+        """Send a command; dropped where the network is full (the next one says the same and more)."""
+        if self._commands is None:
+            self._commands = self._session.declare_publisher(
+                key(self.robot, "command"),
+                congestion_control=zenoh.CongestionControl.DROP,
+                priority=zenoh.Priority.INTERACTIVE_HIGH,
+                express=True,
+            )
+        self._commands.put(encode(command))
 
-    def _ask(self, key: str, message: object, timeout_s: float) -> Answer | None:
+    def _ask(self, what: str, message: object, timeout_s: float) -> dict[str, Answer]:
+        """Return the answers by the names of the robots that gave them."""
         replies = self._session.get(
-            key,
+            key(self.robot or ANY, what),
             payload=encode(message),
             timeout=timeout_s,
+            target=zenoh.QueryTarget.ALL,
             congestion_control=zenoh.CongestionControl.BLOCK,
             express=True,
         )
-        for reply in replies:
-            if reply.ok is not None:
-                answer: Answer = decode_answer(reply.ok.payload.to_bytes())
-                return answer
-        return None
+        return {
+            str(reply.ok.key_expr).split("/")[1]: decode_answer(reply.ok.payload.to_bytes())
+            for reply in replies
+            if reply.ok is not None
+        }
 
-    def request(self, request: Request) -> Accepted | Refused:
+    def request(self, request: AnyRequest) -> Accepted | Refused:
         """Ask the robot side for something and return its answer. Blocks for at most ANSWER_S, settings LOADING_S."""
-        answer = self._ask(KEY_REQUEST, request, LOADING_S if isinstance(request, Configure) else ANSWER_S)
+        answers = self._ask("request", request, LOADING_S if isinstance(request, ConfigureRequest) else ANSWER_S)
+        answer = answers.get(self.robot)
         if isinstance(answer, Accepted | Refused):
             return answer
         return Refused("No answer from the robot side.")
@@ -94,16 +101,21 @@ class OperatorEnd:
         clock = MonotonicClock()
         until = clock.now() + wait_s
         while True:
-            answer = self._ask(KEY_HELLO, Hello(PROTOCOL, __version__), 0.5)
-            if isinstance(answer, Welcome):
-                return answer
-            if isinstance(answer, Refused):
-                raise LinkError(answer.reason)
+            answers = self._ask("hello", Hello(PROTOCOL, __version__), 0.5)
+            if len(answers) > 1:
+                raise LinkError(f"there are several robots: choose one with --robot: {', '.join(sorted(answers))}")
+            for name, answer in answers.items():
+                if isinstance(answer, Welcome):
+                    self.robot = name
+                    return answer
+                if isinstance(answer, Refused):
+                    raise LinkError(answer.reason)
             if ended():
                 raise LinkError("the robot side has ended before it was ready (see above)")
             if clock.now() > until:
+                called = f" called {self.robot!r}" if self.robot else ""
                 raise LinkError(
-                    f"no robot side answers at {self.endpoint}: "
+                    f"no robot side{called} answers at {self.endpoint}: "
                     f"start it with `overreach robot --listen {self.endpoint}`"
                 )
             clock.sleep_until(clock.now() + AGAIN_S)

@@ -1,6 +1,6 @@
 """The robot side's end of the link. Polled by the loop: no thread of Python's runs beside it.
 
-Zenoh's ring channel of one keeps the newest stick in Rust, so that latest wins costs the loop nothing.
+Zenoh's ring channel of one keeps the newest command in Rust, so that latest wins costs the loop nothing.
 """
 
 from __future__ import annotations
@@ -14,22 +14,19 @@ from zenoh.handlers import FifoChannel, RingChannel
 
 from overreach.link.endpoint import open_session
 from overreach.link.messages import (
-    KEY_HELLO,
-    KEY_REQUEST,
-    KEY_STATE,
-    KEY_STICK,
     LONGEST,
     Answer,
+    AnyRequest,
     Hello,
     Refused,
-    Request,
     State,
+    decode_command,
     decode_hello,
     decode_request,
-    decode_stick,
     encode,
+    key,
 )
-from overreach.types import Stick
+from overreach.types import Command
 
 T = TypeVar("T")
 
@@ -42,45 +39,46 @@ REQUESTS_HELD = 64
 
 @final
 class RobotEnd:
-    """Sticks and requests in, states out."""
+    """Commands and requests for the robot called `name` in, its states out."""
 
-    def __init__(self, listen: str) -> None:
+    def __init__(self, listen: str, name: str) -> None:
         self.malformed = 0
+        self.name = name
         self._session = open_session(listen=listen)
-        self._sticks = self._session.declare_subscriber(KEY_STICK, RingChannel(1))
-        self._requests = self._session.declare_queryable(KEY_REQUEST, FifoChannel(REQUESTS_HELD))
-        self._hellos = self._session.declare_queryable(KEY_HELLO, FifoChannel(REQUESTS_HELD))
+        self._commands = self._session.declare_subscriber(key(name, "command"), RingChannel(1))
+        self._requests = self._session.declare_queryable(key(name, "request"), FifoChannel(REQUESTS_HELD))
+        self._hellos = self._session.declare_queryable(key(name, "hello"), FifoChannel(REQUESTS_HELD))
         self._states = self._session.declare_publisher(
-            KEY_STATE,
+            key(name, "state"),
             congestion_control=zenoh.CongestionControl.DROP,
             priority=zenoh.Priority.INTERACTIVE_HIGH,
             express=True,
         )
 
-    def newest_stick(self) -> Stick | None:
-        """Return the newest stick since the last call, or None. What does not decode is counted and dropped."""
-        sample = self._sticks.try_recv()
+    def newest_command(self) -> Command | None:
+        """Return the newest command since the last call, or None. What does not decode is counted and dropped."""
+        sample = self._commands.try_recv()
         if sample is None:
             return None
         try:
-            return decode_stick(_short(sample.payload))
+            return decode_command(_short(sample.payload))
         except NOT_UNDERSTOOD:
             self.malformed += 1
             return None
 
-    def requests(self) -> Iterator[tuple[Request, Callable[[Answer], None]]]:
+    def requests(self) -> Iterator[tuple[AnyRequest, Callable[[Answer], None]]]:
         """Yield each waiting request with the function that answers it."""
-        yield from self._drain(self._requests, decode_request)
+        yield from self._drain(self._requests, "request", decode_request)
 
     def hellos(self) -> Iterator[tuple[Hello, Callable[[Answer], None]]]:
         """Yield each waiting hello with the function that answers it."""
-        yield from self._drain(self._hellos, decode_hello)
+        yield from self._drain(self._hellos, "hello", decode_hello)
 
     def _drain(
-        self, queryable: zenoh.Queryable[Any], decode: Callable[[bytes], T]
+        self, queryable: zenoh.Queryable[Any], what: str, decode: Callable[[bytes], T]
     ) -> Iterator[tuple[T, Callable[[Answer], None]]]:
         while (query := queryable.try_recv()) is not None:
-            answer = _answer_to(query)
+            answer = _answer_to(query, key(self.name, what))
             try:
                 message = decode(_short(query.payload) if query.payload else b"")
             except NOT_UNDERSTOOD as error:
@@ -104,9 +102,9 @@ def _short(payload: zenoh.ZBytes) -> bytes:
     return payload.to_bytes()
 
 
-def _answer_to(query: zenoh.Query) -> Callable[[Answer], None]:
+def _answer_to(query: zenoh.Query, own: str) -> Callable[[Answer], None]:
     def answer(message: Answer) -> None:
-        query.reply(query.key_expr, encode(message))
+        query.reply(own, encode(message))  # under its own key: a hello may be for any robot
         query.drop()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
 
     return answer

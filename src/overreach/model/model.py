@@ -53,6 +53,11 @@ class Model(Protocol):
         """Where the hand is at the start."""
         ...
 
+    @property
+    def gripper(self) -> bool:
+        """Whether its hand opens and closes."""
+        ...
+
 
 def channels(model: Model) -> tuple[Channel, ...]:
     """Return the rates that are written, in order: the base's, then one a joint."""

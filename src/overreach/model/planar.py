@@ -27,6 +27,7 @@ class PlanarRobot(Record, frozen=True):
     workspace: Workspace
     start: Start
     mount: Mount = Mount()
+    gripper: bool = False
     summary: str = ""
 
     def __post_init__(self) -> None:

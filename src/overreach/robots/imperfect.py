@@ -163,10 +163,13 @@ class Sensors:
             return state
         return msgspec.structs.replace(
             state,
-            theta=self._with_noise(state.theta, self._noise),
-            dtheta=self._with_noise(state.dtheta, self._rate_noise),
-            v_b=self._with_noise((state.v_b,), self._rate_noise)[0],
-            w_b=self._with_noise((state.w_b,), self._rate_noise)[0],
+            q=self._with_noise(state.q, self._noise),
+            dq=self._with_noise(state.dq, self._rate_noise),
+            motion=msgspec.structs.replace(
+                state.motion,
+                v_x=self._with_noise((state.v_b,), self._rate_noise)[0],
+                w_z=self._with_noise((state.w_b,), self._rate_noise)[0],
+            ),
         )
 
     def _with_noise(self, values: tuple[float, ...], sigma: float) -> tuple[float, ...]:

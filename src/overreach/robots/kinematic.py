@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import final
 
 from overreach.model.model import Model, channels, check_reach
-from overreach.model.planar import planar
+from overreach.plugs import USUAL, load_model
 from overreach.robots.arc import arc
 from overreach.robots.imperfect import Actuators, Imperfection, Sensors
 from overreach.types import BaseTwist, RobotState
@@ -16,10 +16,12 @@ LONGEST_PIECE = 0.005
 
 @final
 class KinematicRobot:
-    """Any model in simulation, by default the planar one. The base follows exact arcs; joints stop at their limits.
+    """Any model in simulation, by default the built-in one. The base follows exact arcs; joints stop at their limits.
 
     `true` is the state without measurement noise; `read` gives what a sensor would show.
     """
+
+    simulated = True
 
     def __init__(
         self,
@@ -29,7 +31,7 @@ class KinematicRobot:
         psi: float | None = None,
         now: float = 0.0,
     ) -> None:
-        self.model = model or planar()
+        self.model = model or load_model(USUAL)
         self._imperfection = imperfection or Imperfection()
         self._l = self.model.start.l if l is None else l
         self._psi = self.model.start.psi if psi is None else psi
@@ -43,6 +45,7 @@ class KinematicRobot:
         self._theta = self.model.arm.posture(self._l, self._psi)
         self._actuators = Actuators(len(channels(self.model)), self._imperfection)
         self._now = now
+        self._gripper = 0.0
         self._sensors = Sensors(self._imperfection, now)
         self._sensors.see(self.true)
 
@@ -50,21 +53,25 @@ class KinematicRobot:
     def true(self) -> RobotState:
         """The state at the time of the last call, without noise."""
         v_b, w_b, *dtheta = self._actuators.happening
-        return RobotState(self._now, *self._pose, v_b, w_b, self._theta, tuple(dtheta))
+        return RobotState.flat(self._now, *self._pose, v_b, w_b, self._theta, tuple(dtheta), self._gripper)
 
     def read(self, now: float) -> RobotState:
         """Return the measured state at `now` [s]."""
         self._move_to(now)
         return self._sensors.report(self.true, now)
 
-    def write(self, twist: BaseTwist, dtheta: tuple[float, ...], now: float) -> None:
-        """Ask for a base twist and joint rates from `now` on."""
+    def write(
+        self, base: BaseTwist, joints: tuple[float, ...], gripper: float | None, now: float, deadline: float
+    ) -> None:
+        """Ask for a base twist and joint rates from `now` on; they hold, past the deadline too."""
         self._move_to(now)
-        self._actuators.ask((twist.v_b, twist.w_b, *dtheta), now)
+        self._actuators.ask((base.v_x, base.w_z, *joints), now)
+        if gripper is not None:
+            self._gripper = max(0.0, min(1.0, gripper))
 
     def stop(self, now: float) -> None:
         """Ask for standstill."""
-        self.write(BaseTwist(), (0.0,) * len(self._joints), now)
+        self.write(BaseTwist(), (0.0,) * len(self._joints), None, now, now)
 
     def _move_to(self, end: float) -> None:
         while self._now < end:

@@ -59,7 +59,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_csv(path: Path, rows: Sequence[Row]) -> None:
-    """Write `rows` under a header of the field names, theta_1, theta_2 ...; numbers round-trip exactly."""
+    """Write `rows` under a header of the field names, a column a joint; numbers round-trip exactly."""
     joints = [f"theta_{k + 1}" for k in range(len(rows[0].theta))]
     write_table(path, [*Row._fields[:-1], *joints], [(*row[:-1], *row.theta) for row in rows])
 

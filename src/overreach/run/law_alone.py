@@ -6,8 +6,23 @@ from math import isfinite
 from typing import final
 
 from overreach.arm.chain import Chain
+from overreach.control.bounds import Bounds
 from overreach.control.controller import HandController
-from overreach.types import Motion, RobotState, Step, Verdict
+from overreach.control.pilot import Pilot
+from overreach.gate.gate import STILL, Gated
+from overreach.law.body import WholeBody
+from overreach.model.model import Model
+from overreach.types import Command, Decision, Frame, RobotState
+from overreach.verdicts import Motion, Verdict
+
+
+@final
+class NoBounds(Bounds):
+    """Bounds that bind nothing."""
+
+    def keep(self, *_: object) -> bool:
+        """Say that nothing binds."""
+        return True
 
 
 @final
@@ -23,17 +38,27 @@ class LawAlone(HandController):
     def _asks(self, _motion: Motion) -> bool:
         return True
 
-    def _limit(self, *_: object) -> tuple[float, Verdict]:
-        return 1.0, Verdict.MOVING
+    def _bounded(self, model: Model) -> Bounds:
+        return NoBounds(model, self.guard)
 
-    def _base(self, v_b: float, w_b: float, dt: float) -> tuple[float, float]:
-        return v_b, w_b
+    def _last_word(
+        self, decision: Decision, chain: Chain, motion: Motion, dt: float
+    ) -> tuple[Decision, tuple[float, ...]]:
+        rates = decision.rates
+        if isfinite(sum(map(abs, rates))):
+            return decision, rates
+        self.guard.latch(f"The law {self.name!r} gave rates that are not finite: {rates}.")
+        decision = self._at_rest(chain, decision.state)
+        return decision, decision.rates
 
-    def _bounded(self, joints: tuple[float, ...], *_: object) -> tuple[float, ...]:
-        return joints
 
-    def _last_word(self, step: Step, chain: Chain, motion: Motion, dt: float) -> Step:
-        if isfinite(sum(map(abs, step.rates))):
-            return step
-        self.guard.latch(f"The law {self.name!r} gave rates that are not finite: {step.rates}.")
-        return self._at_rest(chain, step.state)
+@final
+class PilotAlone(Pilot):
+    """A pilot whose gate lets everything through at once, with a controller that bounds nothing."""
+
+    def _controller(self, model: Model, law: WholeBody) -> HandController:
+        return LawAlone(model, law)
+
+    def _gated(self, command: Command | None, now: float, dt: float) -> Gated:
+        twist, frame = (command.twist, command.frame) if command else (STILL, Frame.HAND)
+        return Gated(twist, frame, None, 1.0, Motion.ALLOWED, Verdict.MOVING)

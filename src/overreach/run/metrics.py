@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 from overreach.clock import nanoseconds
 from overreach.law.body import WholeBody
-from overreach.law.frame import FRAMES
+from overreach.law.frame import FRAMES, meant, of_two
 from overreach.model.model import Model
 from overreach.model.workspace import Workspace
-from overreach.types import BaseTwist, Frame, HandTwist
+from overreach.types import Frame, Twist
 
 if TYPE_CHECKING:
     from overreach.run.simulate import Row
@@ -116,10 +116,10 @@ def cost_per_step(law: WholeBody, frame: Frame, rows: Sequence[Row], model: Mode
 
     Unlike the rest it is measured, not computed: another time, another number. `overreach bench` does it with care.
     """
-    meant, plan, took = FRAMES[frame], law.planner(model), []
+    angle, plan, took = FRAMES[frame], law.planner(model), []
     for row in rows[:: max(1, len(rows) // MOST_CALLS)]:
-        u = HandTwist(*meant(row.v_c, row.w_c, row.l, row.psi + model.mount.yaw, row.theta_b, row.theta_e))
-        chain, base = model.arm.at(row.theta, model.mount), BaseTwist(row.v_b, row.w_b)
+        u = meant(angle, of_two(frame, row.v_c, row.w_c), row.l, row.psi + model.mount.yaw, row.theta_b, row.theta_e)
+        chain, base = model.arm.at(row.theta, model.mount), Twist(row.v_b, w_z=row.w_b)
         start = nanoseconds()
         plan(chain, u, base)
         took.append(nanoseconds() - start)

@@ -33,7 +33,7 @@ from overreach.plugs import load_model
 from overreach.robots.imperfect import Imperfection
 from overreach.run.command import FASTEST, Segment, read_commands
 from overreach.run.law_table import read_law
-from overreach.types import Command, Frame, Record
+from overreach.types import Frame, Record
 
 LONGEST_S = 1e6
 MOST_STEPS = 20_000_000
@@ -122,14 +122,14 @@ class Scenario(Record, frozen=True):
         """Number of control periods."""
         return max(1, round(self.duration / self.dt))
 
-    def command_at(self, t: float) -> Command:
-        """Return the command that holds at `t` [s], zero before the first segment, and the tremor on top of it."""
+    def command_at(self, t: float) -> tuple[float, float]:
+        """Return (v_c, w_c) that hold at `t` [s], zero before the first segment, and the tremor on top of them."""
         k = bisect.bisect_right(self.segments, t + 1e-9 * self.dt, key=lambda segment: segment.t) - 1
-        held = Command(self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else Command()
+        v_c, w_c = (self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else (0.0, 0.0)
         if self.dither.l == 0.0 and self.dither.psi == 0.0:
-            return held
+            return v_c, w_c
         v, w = self.dither.at(t)
-        return Command(held.v_c + v, held.w_c + w)
+        return v_c + v, w_c + w
 
 
 def builtin_scenarios() -> dict[str, str]:

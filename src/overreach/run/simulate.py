@@ -1,4 +1,4 @@
-"""Run a scenario headless: the same controller as the robot side, a stepped clock, no wire."""
+"""Run a scenario headless: the same pilot as the robot side's, a stepped clock, no wire."""
 
 from __future__ import annotations
 
@@ -7,16 +7,22 @@ from math import cos
 from typing import Any, NamedTuple
 
 from overreach.arm.polar import hand_in_world
-from overreach.control.controller import HandController
-from overreach.gate.limits import limit_speed, slew
+from overreach.control.pilot import Pilot
+from overreach.control.tick import Tick
 from overreach.law.authority import ee_velocity
 from overreach.law.body import WholeBody
+from overreach.law.frame import FRAMES, axes, meant, of_two
 from overreach.plugs import load_law
+from overreach.requests import ArmRequest
 from overreach.robots.kinematic import KinematicRobot
-from overreach.run.law_alone import LawAlone
+from overreach.run.law_alone import PilotAlone
 from overreach.run.scenario import Scenario, load_scenario
 from overreach.run.summary import Summary, summarise
-from overreach.types import Step, Verdict
+from overreach.types import Command, RobotState
+from overreach.verdicts import Verdict
+
+OPERATOR = 1
+"""Who drives a scenario."""
 
 
 class Row(NamedTuple):
@@ -64,51 +70,47 @@ def law_of(scenario: Scenario, name: str, changes: Mapping[str, Any] | None = No
     return load_law(name, {**scenario.parameters.get(name, {}), **(changes or {})}, scenario.blend)
 
 
-def steps(scenario: Scenario, law: WholeBody) -> Iterator[tuple[Row, tuple[float, float], Step]]:
-    """Yield (row, EE velocity error (radial, tangential) [m/s], what was decided) step by step, in constant memory."""
-    model = scenario.model
-    limits = scenario.limits
-    if limits is None:
-        controller: HandController = LawAlone(model, law, scenario.frame)
-    else:
-        controller = HandController(model, law, scenario.frame, ramp_s=limits.ramp_s)
-    robot = KinematicRobot(model, scenario.imperfection, scenario.l, scenario.psi)
-    mount = model.mount.three
-    dt = scenario.dt
-    v_c = w_c = 0.0
+def pilot_for(scenario: Scenario, law: WholeBody) -> Pilot:
+    """Return a new pilot for a run of `scenario`."""
+    if scenario.limits is None:
+        return PilotAlone(scenario.model, law)
+    return Pilot(scenario.model, law, scenario.limits)
+
+
+def ticks(scenario: Scenario, law: WholeBody, pilot: Pilot | None = None) -> Iterator[tuple[Tick, RobotState]]:
+    """Yield (tick, what truly happens from then on) tick by tick, in constant memory: a drive with a held dead-man."""
+    pilot = pilot or pilot_for(scenario, law)
+    robot = KinematicRobot(scenario.model, scenario.imperfection, scenario.l, scenario.psi)
+    frame = scenario.frame or law.frame
+    pilot.ask(ArmRequest(OPERATOR), 0.0)
     for k in range(scenario.steps):
-        t = k * dt
-        wish = scenario.command_at(t)
-        if limits is None:
-            v_c, w_c = wish.v_c, wish.w_c
-        else:
-            goal_v, goal_w, _ = limit_speed(wish.v_c, wish.w_c, limits)
-            v_c, w_c, _ = slew((v_c, w_c), (goal_v, goal_w), limits, dt)
-        done = controller.step(robot.read(t), v_c, w_c, dt, t)
-        robot.write(done.twist, done.dtheta, t)
-        # What was asked for and what really happens, both seen where the hand truly is.
-        true = robot.true
-        chain = model.arm.at(true.theta, model.mount)
-        l, psi = chain.l, chain.psi
-        theta_e = done.polar.theta_e
-        split = done.split
-        if scenario.imperfection.ideal:
-            v_m, w_m = split.v_m, split.w_m
-        else:
-            v_m, w_m, *_ = chain.moved(true.dtheta)
-        u_r, u_t = controller.commanded(v_c, w_c, l, psi, true.theta_b, theta_e)
-        e_r, e_t = ee_velocity(l, psi, true.v_b, true.w_b, v_m, w_m, mount)
-        psi_d = psi + model.mount.yaw
-        x_e, y_e = hand_in_world(true.x_b, true.y_b, true.theta_b, l, psi_d, model.mount.s_x, model.mount.s_y)
-        yield (
-            Row(
-                t, v_c, w_c, l, psi, theta_e, split.mu, split.sigma,
-                true.v_b, true.v_b * cos(psi_d), v_m, true.w_b, w_m,
-                true.x_b, true.y_b, true.theta_b, x_e, y_e, true.theta,
-            ),
-            (e_r - u_r, e_t - u_t),
-            done,
-        )  # fmt: skip
+        t = k * scenario.dt
+        command = Command(OPERATOR, k + 1, 1, True, of_two(frame, *scenario.command_at(t)), frame)
+        tick = pilot.tick(robot.read(t), command, t, scenario.dt)
+        robot.write(tick.base, tick.joints, tick.gripper, t, t + scenario.dt)
+        yield tick, robot.true
+
+
+def row_of(tick: Tick, true: RobotState, scenario: Scenario) -> tuple[Row, tuple[float, float]]:
+    """Return the row of a tick, and the EE's velocity error (radial, tangential) [m/s], where the hand truly is."""
+    model, twist, frame, split = scenario.model, tick.gated.twist, tick.gated.frame, tick.split
+    chain = model.arm.at(true.q, model.mount)
+    l, psi, theta_e = chain.l, chain.psi, tick.polar.theta_e
+    x_b, y_b, theta_b, v_b, w_b = true.x_b, true.y_b, true.theta_b, true.v_b, true.w_b
+    v_m, w_m = split.v_m, split.w_m
+    if not scenario.imperfection.ideal:
+        v_m, w_m, *_ = chain.moved(true.dq)
+    psi_d = psi + model.mount.yaw
+    u = meant(FRAMES[frame], twist, l, psi_d, theta_b, theta_e)
+    e_r, e_t = ee_velocity(l, psi, v_b, w_b, v_m, w_m, model.mount.three)
+    x_e, y_e = hand_in_world(x_b, y_b, theta_b, l, psi_d, model.mount.s_x, model.mount.s_y)
+    v_c, w_c = [getattr(twist, name) for name in axes(frame)]
+    row = Row(
+        t=tick.now, v_c=v_c, w_c=w_c, l=l, psi=psi, theta_e=theta_e, mu=split.mu, sigma=split.sigma,
+        v_b=v_b, v_bm=v_b * cos(psi_d), v_m=v_m, w_b=w_b, w_m=w_m,
+        x_b=x_b, y_b=y_b, theta_b=theta_b, x_e=x_e, y_e=y_e, theta=true.q,
+    )  # fmt: skip
+    return row, (e_r - u.u_r, e_t - u.u_t)
 
 
 def simulate(scenario: Scenario | str, law: WholeBody | str = "exact") -> Run:
@@ -124,9 +126,10 @@ def simulate(scenario: Scenario | str, law: WholeBody | str = "exact") -> Run:
     errors: list[tuple[float, float]] = []
     asked: list[tuple[float, float]] = []
     verdicts: dict[Verdict, int] = {}
-    for row, error, done in steps(scenario, law):
+    for tick, true in ticks(scenario, law):
+        row, error = row_of(tick, true, scenario)
         rows.append(row)
         errors.append(error)
-        asked.append((done.split.v_b, done.split.w_b))
-        verdicts[done.verdict] = verdicts.get(done.verdict, 0) + 1
+        asked.append((tick.base.v_x, tick.base.w_z))
+        verdicts[tick.decided.verdict] = verdicts.get(tick.decided.verdict, 0) + 1
     return Run(scenario, law.name, rows, errors, asked, summarise(scenario, law, rows, errors, verdicts))

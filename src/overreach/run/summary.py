@@ -9,7 +9,8 @@ from overreach.law.blend import Step
 from overreach.law.body import WholeBody
 from overreach.model.model import channels
 from overreach.run import metrics
-from overreach.types import Record, Verdict
+from overreach.types import Record
+from overreach.verdicts import Verdict
 
 if TYPE_CHECKING:
     from overreach.run.scenario import Scenario

@@ -8,7 +8,8 @@ import random
 from overreach.law.authority import ee_velocity
 from overreach.law.laws import Law, Share
 from overreach.model.model import Model
-from overreach.types import Split, Verdict
+from overreach.types import Split
+from overreach.verdicts import Verdict
 
 RATES = ("v_b", "w_b", "v_m", "w_m")
 EXACT_TO = 1e-9

@@ -9,7 +9,8 @@ from overreach.arm.chain import Chain
 from overreach.law.authority import ee_velocity
 from overreach.law.body import WholeBody, checked
 from overreach.model.model import Model
-from overreach.types import BaseTwist, HandTwist, Plan, Verdict
+from overreach.types import HandTwist, Plan, Twist
+from overreach.verdicts import Verdict
 
 RATES = ("v_b", "w_b", "v_m", "w_m")
 SAME = 1e-9
@@ -31,14 +32,14 @@ def check_whole_body(body: WholeBody, model: Model, seed: int = 0, cases: int = 
     missing = [name for name in ("name", "frame", "closes_residual", "planner") if not hasattr(body, name)]
     assert not missing, f"whole body lacks {', '.join(missing)}"
     plan, chance = body.planner(model), random.Random(seed)
-    first: list[tuple[Chain, HandTwist, BaseTwist, Plan]] = []
+    first: list[tuple[Chain, HandTwist, Twist, Plan]] = []
     for _ in range(cases):
         least, most = model.arm.reach
         space = model.workspace
         l = chance.uniform(max(least, 0.9 * space.l_min), min(most, 1.1 * space.l_max))
         chain = model.arm.at(model.arm.posture(l, chance.uniform(space.psi_min, space.psi_max)), model.mount)
         u = _command(chance, model)
-        base = BaseTwist(chance.uniform(-SPEED, SPEED), chance.uniform(-SPEED, SPEED))
+        base = Twist(chance.uniform(-SPEED, SPEED), w_z=chance.uniform(-SPEED, SPEED))
         made = plan(chain, u, base)
         _check_plan(made, chain, u)
         if body.closes_residual:

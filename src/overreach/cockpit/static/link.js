@@ -1,4 +1,4 @@
-// The WebSocket to the cockpit. Newest state in, sticks and questions out; comes back by itself.
+// The WebSocket to the cockpit. Newest state in, commands and questions out; comes back by itself.
 
 const AGAIN_MS = 400;
 const ANSWER_MS = 1500;
@@ -31,9 +31,9 @@ export class Link {
     if (message.type === "state") this.handlers.state(message.state);
     else if (message.type === "welcome") {
       this.operator = message.operator;
-      this.handlers.welcome(message.robot, message.settings);
+      this.handlers.welcome(message.robot, message.settings, message.scene);
       this.handlers.up();
-    } else if (message.type === "settings") this.handlers.settings(message.settings);
+    } else if (message.type === "settings") this.handlers.settings(message.settings, message.scene);
     else if (message.type === "answer") {
       this.waiting.get(message.id)?.(message);
       this.waiting.delete(message.id);

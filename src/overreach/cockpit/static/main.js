@@ -8,7 +8,7 @@ import { Panel } from "./panel.js";
 import { Plots } from "./plots.js";
 import { Stick } from "./stick.js";
 import { toggleTheme } from "./theme.js";
-import { handVelocity, View } from "./view.js";
+import { View } from "./view.js";
 
 const SILENT_MS = 500; // without a state for this long, the robot side is not there
 const STOP_AGAIN_MS = 150;
@@ -29,17 +29,18 @@ const page = { robot: null, settings: null, state: null, stopping: false, heard:
 const silent = () => performance.now() - page.heard > SILENT_MS;
 
 const link = new Link({
-  welcome(robot, settings) {
+  welcome(robot, settings, scene) {
     page.robot = robot;
-    stick.most = { v: robot.v_max, w: robot.w_max };
+    const { v_c, w_c } = robot.limits;
+    stick.most = { v_x: v_c, v_y: v_c, w_z: w_c };
     panel.welcome(robot);
-    configure(settings);
+    configure(settings, scene);
   },
   settings: configure,
   state(state) {
     page.state = state;
     page.heard = performance.now();
-    view.show(state, page.robot, page.settings);
+    view.show(state);
     plots.add(state);
   },
   up() {
@@ -52,17 +53,20 @@ const link = new Link({
 });
 const stick = new Stick(link);
 
-function configure(settings) {
+function configure(settings, scene) {
   page.settings = settings;
-  plots.configure(settings);
-  panel.frame(settings.frame);
-  view.settings = settings;
+  plots.configure(settings.workspace);
+  stick.frame = settings.frame;
+  stick.axes = page.robot.axes[settings.frame];
+  panel.axes(stick.axes);
+  view.scene = scene;
   view.dirty = true;
 }
 
 view.afterDraw.push((state) => {
   if (!state || !link.ready || silent()) return; // an old state that is drawn again is no news
-  panel.show(state, Math.hypot(...handVelocity(state, page.robot)), link.operator);
+  panel.show(state, link.operator);
+  stick.seen = state.t;
   page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
 });
 view.afterFrame.push((at) => plots.afterFrame(at, stick.held));

@@ -23,18 +23,17 @@ export class Panel {
   }
 
   welcome(robot) {
-    put($("robot"), `${robot.robot} · ${robot.simulated ? "simulated" : "real"} · ${robot.rate} Hz`);
+    put($("robot"), `${robot.name} · ${robot.simulated ? "simulated" : "real"} · ${robot.rate} Hz`);
     put($("r-stop"), `${robot.stop_time.toFixed(2)} s`);
     $("restart").hidden = !robot.simulated;
   }
 
-  // `speed`: the hand's true speed [m/s].
-  show(s, speed, operator) {
+  show(s, operator) {
     const now = performance.now();
     const mine = s.armed && s.operator === operator;
     if (now - this.told > NUMBERS_MS) {
       this.told = now;
-      this.numbers(s, speed);
+      this.numbers(s);
     }
     const part = s.scale > 0 && s.scale < 0.995 && s.look !== "stop" ? ` (× ${s.scale.toFixed(2)})` : "";
     if (now > this.until) {
@@ -60,10 +59,11 @@ export class Panel {
   }
 
   // The numbers are for reading: a few times a second is enough, and spares the frames a layout.
-  numbers(s, speed) {
-    put($("r-hand"), `${signed(s.x_e)}, ${signed(s.y_e)} m`);
-    put($("r-base"), `${signed(s.x_b)}, ${signed(s.y_b)} m  ${signed((s.theta_b * 180) / Math.PI, 0)}°`);
-    put($("r-speed"), `${speed.toFixed(2)} m/s`);
+  numbers(s) {
+    const [x, y] = s.hand;
+    put($("r-hand"), `${signed(x)}, ${signed(y)} m`);
+    put($("r-base"), `${signed(s.pose.x)}, ${signed(s.pose.y)} m  ${signed((s.pose.heading * 180) / Math.PI, 0)}°`);
+    put($("r-speed"), `${Math.hypot(...s.velocity).toFixed(2)} m/s`);
     put($("r-refused"), `${s.refused}`);
     put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
   }
@@ -89,16 +89,16 @@ export class Panel {
     $("pad-hint").hidden = true;
   }
 
-  // In the frames of base and world the two parts of the command are the x and y velocity.
-  frame(name) {
-    const plane = name === "base" || name === "world";
-    $("axis-v").innerHTML = plane ? "v<sub>x</sub>" : "v<sub>c</sub>";
-    $("axis-w").innerHTML = plane ? "v<sub>y</sub>" : "w<sub>c</sub>";
-    $("unit-w").textContent = plane ? "m/s" : "rad/s";
+  // What the two axes of the pad mean: forward and leftward along the ground, or forward and turning.
+  axes([, leftward]) {
+    const turns = leftward === "w_z";
+    $("axis-v").innerHTML = turns ? "v<sub>c</sub>" : "v<sub>x</sub>";
+    $("axis-w").innerHTML = turns ? "w<sub>c</sub>" : "v<sub>y</sub>";
+    $("unit-w").textContent = turns ? "rad/s" : "m/s";
   }
 
   stick(stick) {
-    put($("out-v"), signed(stick.v_c));
-    put($("out-w"), signed(stick.w_c));
+    put($("out-v"), signed(stick.forward));
+    put($("out-w"), signed(stick.leftward));
   }
 }

@@ -10,10 +10,10 @@ const TURN_HELD_MS = 125; // while somebody drives, the pad goes first
 const FONT = "system-ui, sans-serif"; // a canvas knows nothing of the style sheet
 
 const PLOTS = {
-  l: { series: [["l", "ink"]], limits: ["l_min", "l_max"], pad: 0.1 },
-  psi: { series: [["psi", "ink"]], limits: ["psi_min", "psi_max"], pad: 0.2 },
-  linear: { series: [["v_b", "base"], ["v_m", "arm"]], span: 0.5 },
-  angular: { series: [["w_b", "base"], ["w_m", "arm"]], span: 0.5 },
+  l: { series: [["l", "ink", (s) => s.l]], limits: ["l_min", "l_max"], pad: 0.1 },
+  psi: { series: [["psi", "ink", (s) => s.psi]], limits: ["psi_min", "psi_max"], pad: 0.2 },
+  linear: { series: [["v_b", "base", (s) => s.base.v_x], ["v_m", "arm", (s) => s.v_m]], span: 0.5 },
+  angular: { series: [["w_b", "base", (s) => s.base.w_z], ["w_m", "arm", (s) => s.w_m]], span: 0.5 },
 };
 
 export class Plots {
@@ -27,9 +27,9 @@ export class Plots {
     });
   }
 
-  configure(settings) {
+  configure(workspace) {
     for (const plot of this.plots) {
-      plot.settings = settings;
+      plot.workspace = workspace;
       plot.fresh = false;
     }
   }
@@ -66,16 +66,16 @@ class Plot {
   add(state) {
     this.end = state.t;
     this.changed = true;
-    this.what.series.forEach(([field], k) => {
+    this.what.series.forEach(([, , value], k) => {
       const points = this.data[k];
-      points.push([state.t, state[field]]);
+      points.push([state.t, value(state)]);
       while (points[0][0] < state.t - SPAN_S - 1) points.shift();
     });
   }
 
   refresh() {
     const chart = this.library?.getInstanceByDom(this.element);
-    if (!chart || !this.settings || !this.element.offsetParent) return;
+    if (!chart || !this.workspace || !this.element.offsetParent) return;
     const range = this.vertical();
     if (!this.fresh || range.min !== this.range.min || range.max !== this.range.max) {
       chart.setOption(this.frame(range), { notMerge: true, silent: true });
@@ -92,7 +92,7 @@ class Plot {
 
   vertical() {
     const { limits, pad = 0, span } = this.what;
-    const wanted = limits ? limits.map((limit) => this.settings[limit]) : [-span, span];
+    const wanted = limits ? limits.map((limit) => this.workspace[limit]) : [-span, span];
     let [min, max] = [Math.min(...wanted) - pad, Math.max(...wanted) + pad];
     for (const points of this.data) {
       for (const [, value] of points) {
@@ -124,7 +124,7 @@ class Plot {
         ...series.map(([name, ink]) => ({ ...plain, name, data: [], lineStyle: { width: 1.8, color: colour(ink) } })),
         ...limits.map((limit) => ({
           ...plain, name: limit, lineStyle: { width: 1.2, color: base, type: "dashed" },
-          data: [[-SPAN_S, this.settings[limit]], [0, this.settings[limit]]],
+          data: [[-SPAN_S, this.workspace[limit]], [0, this.workspace[limit]]],
         })),
       ],
     };

@@ -6,7 +6,10 @@ const HEARTBEAT_MS = 33;
 export class Stick {
   constructor(link) {
     this.link = link;
-    this.most = { v: 0.4, w: 0.4 };
+    this.frame = "hand"; // what the two axes mean goes with every message
+    this.axes = ["v_x", "w_z"]; // forward, leftward: parts of the twist in that frame
+    this.most = { v_x: 0, v_y: 0, w_z: 0 }; // at full deflection
+    this.seen = 0; // time of the newest state that this page has shown
     this.seq = 0;
     this.grip = 0;
     this.holder = null;
@@ -24,11 +27,15 @@ export class Stick {
   get held() {
     return this.holder !== null;
   }
-  get v_c() {
-    return this.y * this.most.v;
+  // What is asked for along the two axes; left is positive, and turns counter-clockwise.
+  get forward() {
+    return this.y * this.most[this.axes[0]];
   }
-  get w_c() {
-    return -this.x * this.most.w; // left turns counter-clockwise
+  get leftward() {
+    return -this.x * this.most[this.axes[1]];
+  }
+  get twist() {
+    return { [this.axes[0]]: this.forward, [this.axes[1]]: this.leftward };
   }
 
   press(holder, x = 0, y = 0) {
@@ -56,7 +63,8 @@ export class Stick {
   say() {
     this.last = performance.now();
     this.seq += 1;
-    this.link.send({ type: "stick", seq: this.seq, grip: this.grip, held: this.held, v_c: this.v_c, w_c: this.w_c });
+    const { seq, grip, held, twist, frame, seen } = this;
+    this.link.send({ type: "command", seq, grip, held, twist, frame, seen });
     for (const listener of this.listeners) listener(this);
   }
 }

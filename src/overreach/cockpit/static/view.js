@@ -45,10 +45,10 @@ export class View {
     this.dirty = true;
   }
 
-  show(state, robot, settings) {
-    Object.assign(this, { state, robot, settings });
-    this.trace("hand", state.x_e, state.y_e);
-    this.trace("base", state.x_b, state.y_b);
+  show(state) {
+    this.state = state;
+    this.trace("hand", state.hand[0], state.hand[1]);
+    this.trace("base", state.pose.x, state.pose.y);
     this.dirty = true;
   }
 
@@ -114,10 +114,10 @@ export class View {
     const dt = Math.min(0.1, (at - (this.at ?? at)) / 1000);
     this.at = at;
     if (this.follow && this.state) {
-      const s = this.state;
+      const { pose, hand } = this.state;
       // A little below the robot, so that the pad does not cover it.
       const shift = (this.w > 820 ? 0.34 : 0.02) * (this.h / this.scale) * 0.5;
-      const goal = { x: 0.5 * (s.x_b + s.x_e) - shift, y: 0.5 * (s.y_b + s.y_e) };
+      const goal = { x: 0.5 * (pose.x + hand[0]) - shift, y: 0.5 * (pose.y + hand[1]) };
       const part = 1 - Math.exp(-dt / 0.25);
       const [dx, dy] = [goal.x - this.centre.x, goal.y - this.centre.y];
       if (Math.hypot(dx, dy) * this.scale > 0.2) {
@@ -145,7 +145,7 @@ export class View {
     g.fillStyle = this.c.stage;
     g.fillRect(0, 0, this.w, this.h);
     this.grid();
-    if (!this.state) return;
+    if (!this.state || !this.scene) return;
     this.trail("base", this.c.base);
     this.trail("hand", this.c.hand);
     this.workspace();
@@ -215,57 +215,50 @@ export class View {
     g.globalAlpha = 1;
   }
 
-  shoulder() {
-    const { x_b, y_b, theta_b } = this.state;
-    const [sx, sy] = this.robot.shoulder;
-    const [c, s] = [Math.cos(theta_b), Math.sin(theta_b)];
-    return [x_b + c * sx - s * sy, y_b + s * sx + c * sy];
+  // From here to `restore` what is drawn is in the base frame: x forward, y to the left, in m.
+  inBaseFrame() {
+    const g = this.paint;
+    const { x, y, heading } = this.state.pose;
+    g.save();
+    g.translate(...this.px(x, y));
+    g.rotate(-heading - Math.PI / 2);
+    g.scale(this.scale, -this.scale);
   }
 
-  // Sector of an annulus about the shoulder, radii [m], bearings [rad] from the arm's x axis.
-  sector(r0, r1, a0, a1) {
+  closed(points) {
     const g = this.paint;
-    const [cx, cy] = this.px(...this.shoulder());
-    const turn = -(this.state.theta_b + this.robot.mount_yaw) - Math.PI / 2;
     g.beginPath();
-    g.arc(cx, cy, Math.max(0, r1) * this.scale, turn - a0, turn - a1, true);
-    g.arc(cx, cy, Math.max(0, r0) * this.scale, turn - a1, turn - a0, false);
+    for (const [x, y] of points) g.lineTo(x, y);
     g.closePath();
   }
 
   workspace() {
     const g = this.paint;
-    const { l_min, l_max, psi_min, psi_max } = this.settings;
-    const [q, p] = [this.state.width_l / 2, this.state.width_psi / 2];
+    this.inBaseFrame();
     g.fillStyle = this.c.space;
-    this.sector(l_min, l_max, psi_min, psi_max);
+    this.closed(this.scene.workspace);
     g.fill();
     g.fillStyle = this.c.band;
-    for (const band of [
-      [l_max - q, l_max + q, psi_min - p, psi_max + p],
-      [l_min - q, l_min + q, psi_min - p, psi_max + p],
-      [l_min + q, l_max - q, psi_max - p, psi_max + p],
-      [l_min + q, l_max - q, psi_min - p, psi_min + p],
-    ]) {
-      if (band[1] <= band[0] || band[3] <= band[2]) continue;
-      this.sector(...band);
+    for (const band of this.scene.bands) {
+      this.closed(band);
       g.fill();
     }
     g.strokeStyle = this.c.arm;
-    g.lineWidth = 1.5;
-    g.setLineDash([5, 4]);
-    this.sector(l_min, l_max, psi_min, psi_max);
+    g.lineWidth = 1.5 / this.scale;
+    g.setLineDash([5 / this.scale, 4 / this.scale]);
+    this.closed(this.scene.workspace);
     g.stroke();
     g.setLineDash([]);
+    g.restore();
   }
 
   base() {
     const g = this.paint;
-    const { x_b, y_b, theta_b } = this.state;
-    const [length, width] = this.robot.footprint.map((side) => side * this.scale);
+    const { x, y, heading } = this.state.pose;
+    const [length, width] = this.scene.footprint.map((side) => side * this.scale);
     g.save();
-    g.translate(...this.px(x_b, y_b));
-    g.rotate(-theta_b - Math.PI / 2); // from here on x is the base's x axis, y to its right
+    g.translate(...this.px(x, y));
+    g.rotate(-heading - Math.PI / 2); // from here on x is the base's x axis, y to its right
     g.fillStyle = this.c.base;
     for (const side of [-1, 1]) {
       g.beginPath();
@@ -291,11 +284,7 @@ export class View {
 
   arm() {
     const g = this.paint;
-    const { theta_b, theta_1 } = this.state;
-    const from = this.shoulder();
-    const along = theta_b + this.robot.mount_yaw + theta_1;
-    const elbow = [from[0] + this.robot.links[0] * Math.cos(along), from[1] + this.robot.links[0] * Math.sin(along)];
-    const points = [from, elbow, [this.state.x_e, this.state.y_e]].map((point) => this.px(...point));
+    const points = this.state.links.map(([x, y]) => this.px(x, y));
     g.lineCap = g.lineJoin = "round";
     for (const [ink, width] of [[this.c.panel, 13], [this.c.arm, 9]]) {
       g.strokeStyle = ink;
@@ -304,7 +293,7 @@ export class View {
       for (const point of points) g.lineTo(...point);
       g.stroke();
     }
-    for (const [x, y] of points.slice(0, 2)) this.disc(x, y, 0.038, this.c.panel, this.c.arm);
+    for (const [x, y] of points.slice(0, -1)) this.disc(x, y, 0.038, this.c.panel, this.c.arm);
   }
 
   disc(x, y, radius, fill, stroke) {
@@ -322,7 +311,8 @@ export class View {
   hand() {
     const g = this.paint;
     const s = this.state;
-    const [x, y] = this.px(s.x_e, s.y_e);
+    const [x_e, y_e] = s.hand;
+    const [x, y] = this.px(x_e, y_e);
     g.save();
     g.translate(x, y);
     g.rotate(-s.theta_e - Math.PI / 2);
@@ -338,12 +328,12 @@ export class View {
     g.stroke();
     g.restore();
     this.disc(x, y, 0.042, this.c.hand, this.c.panel);
-    const [vx, vy] = handVelocity(s, this.robot);
+    const [vx, vy] = s.velocity;
     const speed = Math.hypot(vx, vy);
     if (speed > 0.01) {
       const length = speed * 1.5;
-      const tip = this.px(s.x_e + (vx / speed) * (0.14 + length), s.y_e + (vy / speed) * (0.14 + length));
-      const tail = this.px(s.x_e + (vx / speed) * 0.14, s.y_e + (vy / speed) * 0.14);
+      const tip = this.px(x_e + (vx / speed) * (0.14 + length), y_e + (vy / speed) * (0.14 + length));
+      const tail = this.px(x_e + (vx / speed) * 0.14, y_e + (vy / speed) * 0.14);
       const way = Math.atan2(tip[1] - tail[1], tip[0] - tail[0]);
       g.strokeStyle = g.fillStyle = this.c.hand;
       g.lineWidth = 3;
@@ -358,15 +348,4 @@ export class View {
       g.fill();
     }
   }
-}
-
-// The hand's true velocity in the world [m/s], from the rates of base and arm.
-export function handVelocity(s, robot) {
-  const bearing = s.theta_b + robot.mount_yaw + s.psi;
-  const [c, n] = [Math.cos(bearing), Math.sin(bearing)];
-  const [px, py] = [s.x_e - s.x_b, s.y_e - s.y_b];
-  return [
-    s.v_b * Math.cos(s.theta_b) - s.w_b * py + s.v_m * c - s.l * s.w_m * n,
-    s.v_b * Math.sin(s.theta_b) + s.w_b * px + s.v_m * n + s.l * s.w_m * c,
-  ];
 }

@@ -11,10 +11,10 @@ from types import FrameType
 from overreach.clock import MonotonicClock
 from overreach.errors import SetupError
 from overreach.link.endpoint import check_endpoint
+from overreach.link.messages import Choice, check_name
 from overreach.link.robot_end import RobotEnd
-from overreach.loop import Loop
-from overreach.plugs import load_model
-from overreach.robots.kinematic import KinematicRobot
+from overreach.robot_side.loop import EXACT, Loop
+from overreach.robots.load import load_robot
 
 RATES = (50.0, 1000.0)
 """Valid loop rates [Hz]."""
@@ -42,14 +42,18 @@ def check_rate(rate: float) -> None:
         raise SetupError(f"--rate must be {RATES[0]:g} to {RATES[1]:g} Hz, got {rate:g}")
 
 
-def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -> None:
+def run_robot(
+    robot: str, listen: str, rate: float, parent: int | None = None, name: str = "", law: Choice = EXACT
+) -> None:
     """Run the robot side until SIGINT, SIGTERM or SIGHUP or, with `parent`, until that process has ended.
 
-    Each of these ramps the robot to zero. Raises SetupError or LinkError before anything moves.
+    Each of these ramps the robot to zero. name: in the network, by default the robot's own. Raises SetupError or
+    LinkError before anything moves.
     """
     check_rate(rate)
     endpoint = check_endpoint(listen)
-    model = load_model(robot)
+    if name:
+        check_name(name)
     clock = MonotonicClock(min(SPIN_S, SPIN_PART / rate))
     ended = False
 
@@ -60,13 +64,14 @@ def run_robot(robot: str, listen: str, rate: float, parent: int | None = None) -
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if each is not signal.SIGHUP or signal.getsignal(each) is not signal.SIG_IGN:  # as `nohup` leaves it
             signal.signal(each, end)
-    link = RobotEnd(endpoint)
+    device = load_robot(robot, clock.now())
+    link = RobotEnd(endpoint, name or check_name(device.model.name))
     try:
-        loop = Loop(model, KinematicRobot(model, now=clock.now()), link, clock, rate)
+        loop = Loop(device, link, clock, rate, law)
         fifo = real_time()
         if parent is None:
             note = "" if fifo else " (no real-time priority: see `overreach doctor`)"
-            print(f"overreach robot: {model.name} listens at {endpoint}, {rate:g} Hz{note}", file=sys.stderr)
+            print(f"overreach robot: {link.name} listens at {endpoint}, {rate:g} Hz{note}", file=sys.stderr)
         look = clock.now()
 
         def running() -> bool:

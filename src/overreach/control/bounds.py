@@ -1,0 +1,80 @@
+"""What a robot can do in one period, given where it is and what was written last: one scale for the whole command."""
+
+from __future__ import annotations
+
+from overreach.arm.limits import Room, room
+from overreach.gate.guard import Guard
+from overreach.gate.limits import clamp_change, feasible_scale, within
+from overreach.model.model import Model, channels
+from overreach.types import Channel
+from overreach.verdicts import Verdict
+
+
+class Bounds:
+    """Speed, acceleration and joint limits of a robot, from the rates that its guard has written last."""
+
+    def __init__(self, model: Model, guard: Guard) -> None:
+        each = channels(model)
+        self._guard = guard
+        self._joints: tuple[Channel, ...] = model.arm.channels
+        self._tops = tuple(channel.rate_max for channel in each)
+        self._changes = tuple(channel.change_max for channel in each)
+        self._dt = 0.0
+        self._steps: tuple[float, ...] = ()
+        self._free: list[tuple[float, float]] = []
+
+    def keep(self, rates: tuple[float, ...], q: tuple[float, ...], dt: float) -> bool:
+        """Say whether no limit binds: all `rates` can be written at joints `q`, as they are."""
+        if dt != self._dt:
+            self._prepare(dt)
+        for angle, (low, high) in zip(q, self._free, strict=True):
+            if not low <= angle <= high:
+                return False
+        return within(rates, self._guard.written, self._tops, self._steps)
+
+    def _prepare(self, dt: float) -> None:
+        """Make ready what a period of `dt` [s] allows: changes of rates, and where no limit slows a joint."""
+        self._dt, self._steps = dt, tuple([change * dt for change in self._changes])
+        self._free = []
+        for joint in self._joints:
+            # As in `fastest_towards`, braking at half of what the joint can.
+            margin = max(joint.rate_max * joint.rate_max / joint.change_max, joint.rate_max * dt)
+            self._free.append((joint.lower + margin, joint.upper - margin))
+
+    def room(self, q: tuple[float, ...], dt: float) -> Room:
+        """Return how fast each joint may move at `q`, either way."""
+        return room(self._joints, q, dt)
+
+    def scale(self, rates: tuple[float, ...], owed: tuple[float, ...], free: Room) -> tuple[float, Verdict]:
+        """Return the scale of the command at which no limit is passed, and why.
+
+        rates: of base and joints at scale 1; owed: what the joints owe the base whatever the command is, a part of it;
+        free: the joints' `room`.
+        """
+        v_b, w_b, *joints = rates
+        fastest = [high if rate >= 0.0 else -low for rate, (low, high) in zip(joints, free, strict=True)]
+        commanded = (v_b, w_b, *[rate - own for rate, own in zip(joints, owed, strict=True)])
+        most = (*self._tops[:2], *fastest)
+        scale, verdict = feasible_scale(commanded, self._guard.written, most, self._steps, (0.0, 0.0, *owed))
+        if verdict is Verdict.SPEED and any(
+            abs(rate) * scale >= top * 0.999 and top < usual * 0.999
+            for rate, top, usual in zip(joints, fastest, self._tops[2:], strict=True)
+        ):
+            verdict = Verdict.JOINT_LIMIT
+        return scale, verdict
+
+    def base(self, v_b: float, w_b: float) -> tuple[float, float]:
+        """Return the base's rates, held to its accelerations."""
+        (was_v, was_w, *_), (dv, dw, *_) = self._guard.written, self._steps
+        return clamp_change(v_b, was_v, dv), clamp_change(w_b, was_w, dw)
+
+    def joints(self, rates: tuple[float, ...], free: Room) -> tuple[float, ...]:
+        """Return joint rates held to their limits: to what still stops in time, then to the accelerations."""
+        return tuple(
+            [
+                clamp_change(max(low, min(high, rate)), was, change)
+                for rate, (low, high), was, change in zip(
+                    rates, free, self._guard.written[2:], self._steps[2:], strict=True
+                )
+            ]
+        )

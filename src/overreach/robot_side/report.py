@@ -1,0 +1,142 @@
+"""What the loop tells: a tick as the state on the wire, and the first word to an operator."""
+
+from __future__ import annotations
+
+from math import cos, inf, sin
+from typing import final
+
+from overreach import __version__
+from overreach.arm.chain import Chain, Point
+from overreach.arm.mount import Mount
+from overreach.control.pilot import Pilot, obeys
+from overreach.control.tick import Tick
+from overreach.gate.gate import STALE_S
+from overreach.law.blend import Blend, Step
+from overreach.law.body import WholeBody
+from overreach.law.frame import axes
+from overreach.link.messages import PROTOCOL, Plug, Scene, Settings, State, Welcome
+from overreach.model.model import Model
+from overreach.model.outline import bands, workspace
+from overreach.robot_side.timing import Lateness
+from overreach.types import BaseTwist, Frame, Pose
+
+LATE_EVERY_S = 1.0
+
+
+@final
+class Reporter:
+    """Makes wire states of ticks; keeps the loop's lateness over the last second."""
+
+    def __init__(self) -> None:
+        self.late = Lateness()
+        self._told = (0.0, 0.0, 0.0)
+        self._told_at = -inf
+
+    def state(self, tick: Tick, pilot: Pilot, number: int, overruns: int, malformed: int, revision: int) -> State:
+        """Return the tick as a state."""
+        if tick.now - self._told_at >= LATE_EVERY_S:
+            self._told = (self.late.percentile(0.5), self.late.percentile(0.99), self.late.most * 1e6)
+            self._told_at = tick.now
+            self.late.reset()
+        verdict, split, polar, state = tick.verdict, tick.split, tick.polar, tick.decided.state
+        model = pilot.model
+        chain = model.arm.at(state.q, model.mount)
+        p50, p99, most = self._told
+        return State(
+            t=tick.now,
+            tick=number,
+            operator=tick.operator,
+            ack=pilot.gate.seq,
+            seen=pilot.gate.seen,
+            verdict=verdict.value,
+            word=verdict.word,
+            sentence=tick.sentence,
+            look=verdict.look,
+            scale=tick.scale,
+            armed=tick.armed,
+            stopped=tick.latched,
+            twist=tick.gated.twist,
+            frame=tick.gated.frame,
+            gripper=tick.gripper,
+            l=polar.l,
+            psi=polar.psi,
+            theta_e=polar.theta_e,
+            mu=split.mu,
+            sigma=split.sigma,
+            v_m=split.v_m,
+            w_m=split.w_m,
+            base=tick.base,
+            pose=state.pose,
+            joints=state.q,
+            hand=in_world(state.pose, chain.hand),
+            velocity=velocity(state.pose, chain, tick.base, tick.joints, model.mount),
+            links=tuple([in_world(state.pose, point) for point in chain.points]),
+            late_p50=p50,
+            late_p99=p99,
+            late_max=most,
+            overruns=overruns,
+            refused=pilot.gate.refused + malformed,
+            revision=revision,
+        )
+
+
+def in_world(pose: Pose, point: Point) -> Point:
+    """Return where a point of the base frame is in the world, for a base on level ground [m]."""
+    c, s = cos(pose.yaw), sin(pose.yaw)
+    x, y, z = point
+    return pose.x + c * x - s * y, pose.y + s * x + c * y, pose.z + z
+
+
+def velocity(pose: Pose, chain: Chain, base: BaseTwist, joints: tuple[float, ...], mount: Mount) -> Point:
+    """Return the hand's true velocity in the world [m/s], from the rates of base and arm that are written.
+
+    In the base frame: v + w_z z x p_e + v_m r + l w_m t, and v_z up.
+    """
+    v_m, w_m, v_z, *_ = chain.moved(joints)
+    x, y, _ = chain.hand
+    r_x, r_y = cos(chain.psi + mount.yaw), sin(chain.psi + mount.yaw)
+    v_t = chain.l * w_m
+    v_x = base.v_x - base.w_z * y + v_m * r_x - v_t * r_y
+    v_y = base.v_y + base.w_z * x + v_m * r_y + v_t * r_x
+    c, s = cos(pose.yaw), sin(pose.yaw)
+    return c * v_x - s * v_y, s * v_x + c * v_y, v_z
+
+
+def welcome(
+    pilot: Pilot,
+    settings: Settings,
+    defaults: Settings,
+    name: str,
+    rate: float,
+    simulated: bool,
+    laws: dict[str, Plug],
+    blends: dict[str, Plug],
+    revision: int,
+) -> Welcome:
+    """Return the first word to an operator."""
+    model = pilot.model
+    return Welcome(
+        protocol=PROTOCOL,
+        version=__version__,
+        name=name,
+        model=model.name,
+        rate=rate,
+        limits=pilot.gate.limits,
+        reach=model.arm.reach,
+        obeys=tuple(sorted(obeys(model))),
+        axes={frame.value: axes(frame) for frame in Frame},
+        stop_time=STALE_S + 1.0 / rate + pilot.controller.guard.stop_s,
+        simulated=simulated,
+        laws=laws,
+        blends=blends,
+        settings=settings,
+        defaults=defaults,
+        scene=scene(model, pilot.controller.law),
+        revision=revision,
+    )
+
+
+def scene(model: Model, law: WholeBody) -> Scene:
+    """Return what is drawn about the base."""
+    blend: Blend = getattr(law, "blend", Step())
+    return Scene(model.base.footprint, workspace(model), bands(model, blend.width_l, blend.width_psi))

@@ -1,0 +1,117 @@
+"""What every robot must keep to, real or simulated. In a test of your own: `check_robot(lambda now: MyRobot(now))`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from overreach.clock import Clock, SteppedClock
+from overreach.model.model import channels
+from overreach.robots.base import Robot
+from overreach.types import BaseTwist, RobotState
+
+PERIOD = 0.01
+"""Robots are read and written every so many s."""
+PART = 0.1
+"""Each channel is asked for this part of its greatest rate."""
+SETTLES_S = 1.0
+"""A rate that is asked for is there, and one that is not is gone, after this long [s] ..."""
+TOLERANCE = 0.3
+"""... to this part of what was asked for."""
+STILL = 1e-3
+"""A robot at rest moves by no more than this [m/s, rad/s]."""
+UNIT = 1e-3
+"""How near the length of the attitude's quaternion is to 1."""
+
+
+def check_robot(
+    make: Callable[[float], Robot], clock: Clock | None = None, period: float = PERIOD, settles_s: float = SETTLES_S
+) -> None:
+    """Raise AssertionError where a robot that `make(now)` gives breaks a promise. It moves, each channel by itself.
+
+    clock: a real one for a robot that lives in real time, else time is stepped. Checked: it has all that the Protocol
+    names; states have the model's joints, finite numbers in Python's own floats, a unit quaternion, and a stamp that is
+    not ahead and goes on; at first it is at rest; each channel that is asked for moves, the others do not, and its
+    position goes the way of its rate; what is asked for holds until it is asked for otherwise; `stop` is rest; and a
+    simulated robot goes back to its start.
+    """
+    clock = clock or SteppedClock(1000.0)
+    robot = make(clock.now())
+    missing = [name for name in ("model", "simulated", "read", "write", "stop", "restart") if not hasattr(robot, name)]
+    assert not missing, f"robot lacks {', '.join(missing)}"
+    each = channels(robot.model)
+    assert len({channel.name for channel in each}) == len(each), "two channels have one name"
+    first = _read(robot, clock, None)
+    assert max(map(abs, _rates(first)), default=0.0) <= STILL, f"moves before it is asked to: {first}"
+    last = first
+    for k, channel in enumerate(each):
+        for sign in (1.0, -1.0):
+            wanted = [0.0] * len(each)
+            wanted[k] = sign * PART * channel.rate_max
+            begin = _positions(last)[k]
+            last = _drive(robot, clock, wanted, period, settles_s, last)
+            _check_rates(last, wanted, [one.name for one in each])
+            way = _positions(last)[k] - begin
+            assert way * sign > 0.0, f"{channel.moves} goes the wrong way: {way:+.3g} at {wanted[k]:+.3g}"
+            # What was asked for holds: half of the time again, without a word.
+            clock.sleep_until(clock.now() + period)
+            last = _read(robot, clock, last)
+            _check_rates(last, wanted, [one.name for one in each])
+            last = _drive(robot, clock, [0.0] * len(each), period, settles_s, last)
+            assert max(map(abs, _rates(last))) <= STILL, f"{channel.name} does not come to rest: {last}"
+    _drive(robot, clock, [0.5 * PART * channel.rate_max for channel in each], period, settles_s, last)
+    robot.stop(clock.now())
+    clock.sleep_until(clock.now() + settles_s)
+    last = _read(robot, clock, last)
+    assert max(map(abs, _rates(last))) <= STILL, f"moves after stop: {last}"
+    if robot.simulated:
+        robot.restart(clock.now())
+        again = _read(robot, clock, None)
+        off = max(abs(a - b) for a, b in zip(_positions(again), _positions(first), strict=True))
+        assert off <= STILL, f"restart is {off:.2g} off the start"
+
+
+def _read(robot: Robot, clock: Clock, before: RobotState | None) -> RobotState:
+    now = clock.now()
+    state = robot.read(now)
+    n = len(robot.model.arm.channels)
+    assert len(state.q) == len(state.dq) == n, f"reports {len(state.q)} joints and {len(state.dq)} rates, has {n}"
+    assert state.plain is state, f"reports numbers that are not Python's own floats: {state}"
+    assert all(map(math.isfinite, (*state.numbers, *state.q, *state.dq))), f"reports what is not finite: {state}"
+    pose = state.pose
+    length = math.hypot(pose.q_w, pose.q_x, pose.q_y, pose.q_z)
+    assert abs(length - 1.0) <= UNIT, f"the attitude is no unit quaternion: its length is {length:.6g}"
+    assert state.t <= now, f"the stamp {state.t:g} s is ahead of the clock, {now:g} s"
+    if before is not None:
+        assert state.t > before.t, f"the stamp does not go on: {state.t:g} s after {before.t:g} s"
+    return state
+
+
+def _positions(state: RobotState) -> tuple[float, ...]:
+    """Return what each channel moves; of the base's place, how far it lies along its heading."""
+    pose = state.pose
+    along = pose.x * math.cos(pose.yaw) + pose.y * math.sin(pose.yaw)
+    return along, pose.yaw, *state.q
+
+
+def _rates(state: RobotState) -> tuple[float, ...]:
+    return state.motion.v_x, state.motion.w_z, *state.dq
+
+
+def _drive(
+    robot: Robot, clock: Clock, wanted: list[float], period: float, seconds: float, last: RobotState
+) -> RobotState:
+    for _ in range(max(1, round(seconds / period))):
+        now = clock.now()
+        base = BaseTwist(wanted[0], 0.0, wanted[1])
+        robot.write(base, tuple(wanted[2:]), None, now, now + 2.0 * period)
+        clock.sleep_until(now + period)
+        last = _read(robot, clock, last)
+    return last
+
+
+def _check_rates(state: RobotState, wanted: list[float], names: list[str]) -> None:
+    most = max(map(abs, wanted))
+    for name, rate, asked in zip(names, _rates(state), wanted, strict=True):
+        off = abs(rate - asked)
+        assert off <= TOLERANCE * most + STILL, f"{name} is {rate:.3g}, {asked:.3g} was asked for"
