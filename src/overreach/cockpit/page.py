@@ -15,7 +15,7 @@ PLOTS = {
     "l": "<b>l</b> m",
     "psi": "<b>ψ</b> rad",
     "linear": f"<b>linear</b> m/s {_KEY.format('v')}",
-    "angular": f"<b>angular</b> rad/s {_KEY.format('w')}",
+    "angular": f"<b>angular</b> rad/s {_KEY.format('ω')}",
 }
 """The plots, top to bottom, with their captions; `static/plots.js` says what is in each."""
 MARKUP = files("overreach.cockpit").joinpath("static/stage.html")

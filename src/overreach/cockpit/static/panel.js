@@ -62,7 +62,7 @@ export class Panel {
   numbers(s) {
     const [x, y] = s.hand;
     put($("r-hand"), `${signed(x)}, ${signed(y)} m`);
-    put($("r-base"), `${signed(s.pose.x)}, ${signed(s.pose.y)} m  ${signed((s.pose.heading * 180) / Math.PI, 0)}°`);
+    put($("r-base"), `${signed(s.pose.x)}, ${signed(s.pose.y)} m · ${signed((s.pose.heading * 180) / Math.PI, 0)}°`);
     put($("r-speed"), `${Math.hypot(...s.velocity).toFixed(2)} m/s`);
     put($("r-refused"), `${s.refused}`);
     put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
@@ -93,7 +93,7 @@ export class Panel {
   axes([, leftward]) {
     const turns = leftward === "w_z";
     $("axis-v").innerHTML = turns ? "v<sub>c</sub>" : "v<sub>x</sub>";
-    $("axis-w").innerHTML = turns ? "w<sub>c</sub>" : "v<sub>y</sub>";
+    $("axis-w").innerHTML = turns ? "ω<sub>c</sub>" : "v<sub>y</sub>";
     $("unit-w").textContent = turns ? "rad/s" : "m/s";
   }
 

@@ -13,7 +13,7 @@ const PLOTS = {
   l: { series: [["l", "ink", (s) => s.l]], limits: ["l_min", "l_max"], pad: 0.1 },
   psi: { series: [["psi", "ink", (s) => s.psi]], limits: ["psi_min", "psi_max"], pad: 0.2 },
   linear: { series: [["v_b", "base", (s) => s.base.v_x], ["v_m", "arm", (s) => s.v_m]], span: 0.5 },
-  angular: { series: [["w_b", "base", (s) => s.base.w_z], ["w_m", "arm", (s) => s.w_m]], span: 0.5 },
+  angular: { series: [["w_b", "base", (s) => s.base.w_z], ["w_m", "arm", (s) => s.w_m]], span: 0.5, time: true },
 };
 
 export class Plots {
@@ -107,18 +107,20 @@ class Plot {
   // The limits are lines like the others, after them: a mark on a line would be laid out at every change.
   frame(range) {
     const [muted, line, base] = ["muted", "line", "base"].map(colour);
-    const { series, limits = [] } = this.what;
+    const { series, limits = [], time = false } = this.what;
+    const label = { color: muted, fontSize: 11, fontFamily: FONT };
     const plain = { type: "line", showSymbol: false, silent: true };
     return {
       animation: false,
-      grid: { left: 34, right: 6, top: 6, bottom: 6 },
+      grid: { left: 34, right: 6, top: 6, bottom: time ? 18 : 6 },
       xAxis: {
         type: "value", min: -SPAN_S, max: 0, axisLine: { onZero: false, lineStyle: { color: line } }, splitLine: { show: false },
-        axisTick: { show: false }, axisLabel: { show: false },
+        axisTick: { show: false }, interval: SPAN_S / 4,
+        axisLabel: { ...label, show: time, margin: 4, formatter: (t) => (t ? `${t} s`.replace("-", "−") : "now"), alignMaxLabel: "right", alignMinLabel: "left" },
       },
       yAxis: {
         type: "value", ...range, axisLine: { show: false }, axisTick: { show: false }, splitLine: { lineStyle: { color: line, opacity: 0.6 } },
-        axisLabel: { color: muted, fontSize: 11, fontFamily: FONT, formatter: (value) => (+value.toFixed(2)).toString().replace("-", "−") },
+        axisLabel: { ...label, formatter: (value) => (+value.toFixed(2)).toString().replace("-", "−") },
       },
       series: [
         ...series.map(([name, ink]) => ({ ...plain, name, data: [], lineStyle: { width: 1.8, color: colour(ink) } })),

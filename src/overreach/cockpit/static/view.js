@@ -41,8 +41,18 @@ export class View {
     this.canvas.width = Math.round(this.w * ratio);
     this.canvas.height = Math.round(this.h * ratio);
     this.ratio = ratio;
+    this.free = this.uncovered();
     this.fit ??= this.scale = Math.max(80, Math.min(190, Math.min(this.w / 4.2, this.h / 3.6)));
     this.dirty = true;
+  }
+
+  // The middle of what the pad leaves free: all of the picture, what is above the pad, or what is beside it. [px]
+  uncovered() {
+    const [box, pad] = [this.canvas, document.getElementById("pad")].map((one) => one.getBoundingClientRect());
+    const whole = { x: this.w / 2, y: this.h / 2 };
+    if (pad.top > box.bottom - 8) return whole;
+    if (pad.left + pad.right > box.left + box.right + 80) return { x: (pad.left - box.left) / 2, y: whole.y };
+    return { x: whole.x, y: (pad.top - box.top) / 2 };
   }
 
   show(state) {
@@ -115,9 +125,10 @@ export class View {
     this.at = at;
     if (this.follow && this.state) {
       const { pose, hand } = this.state;
-      // A little below the robot, so that the pad does not cover it.
-      const shift = (this.w > 820 ? 0.34 : 0.02) * (this.h / this.scale) * 0.5;
-      const goal = { x: 0.5 * (pose.x + hand[0]) - shift, y: 0.5 * (pose.y + hand[1]) };
+      const goal = {
+        x: 0.5 * (pose.x + hand[0]) + (this.free.y - this.h / 2) / this.scale,
+        y: 0.5 * (pose.y + hand[1]) + (this.free.x - this.w / 2) / this.scale,
+      };
       const part = 1 - Math.exp(-dt / 0.25);
       const [dx, dy] = [goal.x - this.centre.x, goal.y - this.centre.y];
       if (Math.hypot(dx, dy) * this.scale > 0.2) {
