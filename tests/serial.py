@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, final
 
+import msgspec
 import numpy as np
 
 from overreach.arm.chain import Moved, Point, Rest
@@ -170,6 +171,9 @@ class SerialRobot(Record, frozen=True):
     workspace: Workspace = Workspace(0.45, 0.85, -0.6, 0.6)
     start: Start = Start(0.65, 0.0)
     gripper: bool = True
+
+    def placed(self, mount: Mount, workspace: Workspace) -> SerialRobot:
+        return msgspec.structs.replace(self, mount=mount, workspace=workspace)
 
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)

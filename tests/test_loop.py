@@ -1,32 +1,42 @@
 from __future__ import annotations
 
 import contextlib
+import math
+from array import array
+from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from itertools import pairwise
+from threading import current_thread
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
 
+from overreach.arm.mount import Mount
+from overreach.arm.planar import Arm2R, Chain2R
 from overreach.clock import SteppedClock
 from overreach.errors import SetupError
-from overreach.law.body import NO_SOLUTION, Planner
-from overreach.law.laws import Law
+from overreach.law.body import NO_SOLUTION
+from overreach.law.laws import Exact, Law, Share
 from overreach.link.endpoint import free_port
-from overreach.link.messages import Accepted, Answer, Choice, ConfigureRequest, Refused, Settings, State
+from overreach.link.messages import Accepted, Answer, Choice, ConfigureRequest, Refused, Settings, State, decode_state
 from overreach.link.robot_end import RobotEnd
 from overreach.model.model import Model
 from overreach.model.planar import planar
 from overreach.model.workspace import Workspace
 from overreach.requests import RestartRequest
+from overreach.robot_side import settings as settings_module
 from overreach.robot_side.loop import Loop
 from overreach.robot_side.settings import Built, build
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import BaseTwist, RobotState, Split
+from overreach.types import BaseTwist, Command, RobotState, Split
 from overreach.verdicts import Verdict
 from tests.laws import Given, exact
+from tests.processes import until
 from tests.said import said
+from tests.serial import SerialRobot, six
 
 PERIOD = 0.005
 
@@ -228,7 +238,7 @@ def test_a_law_that_is_slow_three_times_is_a_fault(bench: Bench, slow: int, faul
 def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of what gate and law say the weightier is told: NO_SOLUTION over SPEED, STOPPED over that, with its look."""
     states: list[State] = []
-    monkeypatch.setattr(bench.loop._link, "publish", states.append)
+    monkeypatch.setattr(bench.loop._link, "publish", lambda state: states.append(decode_state(state)))
     bench.loop.pilot.controller.configure(Given(lambda *_: NO_SOLUTION, "unsolved"))
 
     def too_fast(k: int) -> None:
@@ -292,24 +302,14 @@ def test_the_end_makes_up_for_nothing(bench: Bench) -> None:
     assert all(later - earlier >= 0.999 * PERIOD for earlier, later in pairwise(at[:-1]))
 
 
-class Half(Law, frozen=True):
-    """A law that can be made and not be used."""
-
-    name = "half"
-
-    def planner(self, model: Model) -> Planner:
-        raise ZeroDivisionError("a plug-in's own")
-
-
 def test_settings_are_used_all_or_none(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """A law that cannot be used leaves law, workspace and speed as they were, and is told."""
     loop, pilot = bench.loop, bench.loop.pilot
     answers: list[Answer] = []
     before = (pilot.controller.law, pilot.model, pilot.gate.speed_scale, loop.settings)
     wanted = msgspec.structs.replace(loop.settings, law=Choice("exact"), speed_scale=0.3)
-    other = planar(workspace=Workspace(0.5, 0.8, -0.5, 0.5))
     done: Future[Built] = Future()
-    done.set_result(Built(wanted, Half(), other))
+    done.set_exception(ZeroDivisionError("a plug-in's own"))
     monkeypatch.setattr(loop._builder, "begin", lambda *_: done)
     loop._begin(ConfigureRequest(wanted), answers.append)
     loop.tick(bench.clock.now(), PERIOD)
@@ -356,3 +356,170 @@ def test_at_rest_is_when_nothing_is_written(bench: Bench) -> None:
 
     bench.drive(400, let_go)
     bench.check()
+
+
+class Compiled(Law, frozen=True):
+    """A law that notes where it is made."""
+
+    name = "compiled"
+    notes: list[str] = []
+
+    def bind(self, model: Model) -> Share:
+        self.notes.append(current_thread().name)
+        return Exact().bind(model)
+
+
+def test_a_law_is_made_once_and_not_on_the_loops_thread(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a law does when it meets the robot, compiling for one, is done beside the loop, once; the loop takes it."""
+    law, answers = Compiled(), []  # type: ignore[var-annotated]
+    monkeypatch.setattr(settings_module, "load_law", lambda *_: law)
+    bench.loop._begin(ConfigureRequest(bench.loop.settings), answers.append)
+    assert bench.loop._building
+    until(bench.loop._building.future.done, what="the law")
+    bench.loop.tick(bench.clock.now(), PERIOD)
+    assert answers == [Accepted()]
+    assert bench.loop.pilot.controller.law is law
+    assert law.notes == ["settings"]
+
+
+def test_while_libraries_load_nobody_drives(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A press made while a slow law is loaded moves nothing, then or later: only release and a new press do."""
+    loop, going = bench.loop, Future()  # type: ignore[var-annotated]
+    monkeypatch.setattr(loop._builder, "begin", lambda *_: going)
+    wanted = msgspec.structs.replace(loop.settings, law=Choice("holistic"))
+    commands: list[Command | None] = []
+    monkeypatch.setattr(loop._link, "newest_command", lambda: commands.pop() if commands else None)
+    loop._begin(ConfigureRequest(wanted), lambda answer: None)
+    for k in range(300):
+        if k == 100:
+            going.set_result(build(loop.settings, loop._model))
+        commands.append(said(7, k + 1, 1 if k < 200 else 2, True, 0.4, 0.0))
+        loop.tick(bench.clock.now(), PERIOD)
+        bench.clock.t += PERIOD
+        moving = bench.driver.written[-1][2] != 0.0
+        assert moving is (k >= 200)
+
+
+@pytest.mark.parametrize("width", [1e-320, 1e-5, 0.01, 3e4, 1e300])
+@pytest.mark.parametrize("blend", ["tanh", "smoothstep"])
+def test_any_width_of_a_blend_is_drawn_in_few_points(blend: str, width: float) -> None:
+    """However wide or narrow a blend is, what is drawn of it is small, and nothing raises."""
+    model = planar()
+    names = ("alpha", "beta") if blend == "tanh" else ("q_l", "q_psi")
+    for name in names:
+        scene = build(Settings(model.workspace, blend=Choice(blend, {name: width})), model).scene
+        assert sum(len(band) for band in scene.bands) < 900
+        assert all(math.isfinite(x) and math.isfinite(y) for band in scene.bands for x, y in band)
+
+
+class OddNumbers(Driver):
+    """A driver that reports what drivers like to report."""
+
+    kind: Callable[[tuple[float, ...]], Any] = list
+
+    def read(self, now: float) -> RobotState:
+        state = self.robot.read(now)
+        kind = type(self).kind
+        return msgspec.structs.replace(state, q=kind(state.q), dq=kind(state.dq), t=np.float64(state.t))
+
+
+@pytest.mark.parametrize(
+    "kind", [list, lambda q: array("d", q), deque, np.array], ids=["list", "array", "deque", "numpy"]
+)
+def test_whatever_kind_of_numbers_a_robot_reports(bench: Bench, kind: Callable[..., Any]) -> None:
+    """Joints as a list, an array, a deque or numpy's: they are driven, and told on the wire."""
+    states: list[State] = []
+    driver = OddNumbers(bench.clock.now())
+    type(driver).kind = staticmethod(kind)
+    bench.driver = driver
+    bench.loop._robot = driver
+    bench.loop._link.publish = lambda state: states.append(decode_state(state))  # type: ignore[method-assign]
+    bench.drive(200)
+    bench.check()
+    assert bench.loop.pilot.gate.latch.fault == ""
+    assert states[-10].joints == driver.robot.true.q or len(states[-10].joints) == 2
+
+
+def test_a_list_that_is_filled_again_and_again_changes_nothing_that_was_believed(bench: Bench) -> None:
+    """A driver that hands out one list for ever, and puts infinity into it: FAULT, and a ramp to the end."""
+    joints = [0.0, 0.0]
+
+    class Refills(Driver):
+        bad = False
+
+        def read(self, now: float) -> RobotState:
+            state = self.robot.read(now)
+            joints[:] = [math.inf, math.inf] if self.bad else state.q
+            return msgspec.structs.replace(state, q=joints)
+
+    driver = Refills(bench.clock.now())
+    bench.driver = bench.loop._robot = driver
+
+    def breaks(k: int) -> None:
+        driver.bad = k >= 300
+
+    bench.drive(320, breaks)
+    bench.check()
+    assert "not finite" in bench.loop.pilot.gate.latch.fault
+
+
+def test_an_arm_in_space_is_driven_by_the_loop() -> None:
+    """The second kind of arm, in the real loop on a real link: it moves as pushed, and what is told can be read."""
+    clock, states = SteppedClock(100.0), []
+    link = RobotEnd(f"tcp/127.0.0.1:{free_port()}", "serial")
+    try:
+        loop = Loop(KinematicRobot(SerialRobot(six()), now=100.0), link, clock, 1.0 / PERIOD)
+        link.publish = lambda state: states.append(decode_state(state))  # type: ignore[method-assign]
+        loop.pilot.gate.arm(7, 0, clock.now())
+        for k in range(300):
+            loop.pilot.gate.accept(said(7, k + 1, 1, True, 0.3, 0.0), clock.now())
+            loop.tick(clock.now(), PERIOD)
+            clock.t += PERIOD
+        assert loop.pilot.gate.latch.fault == ""
+        assert states[-1].verdict == "moving"
+        assert states[-1].hand[0] - states[0].hand[0] > 0.3
+        assert len(states[-1].links) == 7
+        assert math.hypot(*states[-1].velocity) == pytest.approx(0.3, abs=1e-6)
+    finally:
+        link.close()
+
+
+def test_an_arm_that_raises_is_a_fault_and_a_ramp(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kinematics that raise from some pose on: FAULT with what was raised; the robot ramps, to the end."""
+    whole = Arm2R.at
+    broken = False
+
+    def at(arm: Arm2R, joints: tuple[float, ...], mount: Mount) -> Chain2R:
+        if broken:
+            raise ArithmeticError("singular")
+        return whole(arm, joints, mount)
+
+    monkeypatch.setattr(Arm2R, "at", at)
+
+    def breaks(k: int) -> None:
+        nonlocal broken
+        broken = k >= 300
+
+    bench.drive(330, breaks)
+    bench.check()
+    assert bench.loop.pilot.gate.latch.fault == "The arm's kinematics raised ArithmeticError: singular."
+
+
+def test_what_cannot_be_told_is_a_fault(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A state that cannot be put into bytes stops the robot with the reason, and not the loop."""
+    told = bench.loop._reporter.state
+    odd = False
+
+    def state(*arguments: Any) -> Any:
+        right = told(*arguments)
+        return msgspec.structs.replace(right, hand=object()) if odd else right
+
+    monkeypatch.setattr(bench.loop._reporter, "state", state)
+
+    def breaks(k: int) -> None:
+        nonlocal odd
+        odd = k >= 300
+
+    bench.drive(350, breaks)
+    bench.check()
+    assert bench.loop.pilot.gate.latch.fault.startswith("The robot's state cannot be told: TypeError")

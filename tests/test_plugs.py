@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -10,9 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from overreach.errors import UnknownNameError
 from overreach.link.messages import Accepted, Refused
 from overreach.parameters import schema
-from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, names
+from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, load_law, names
 from overreach.requests import ResetRequest, RestartRequest, StopRequest
 from tests.plugin import install
 from tests.processes import Driver, until
@@ -177,3 +179,55 @@ def test_a_robot_is_one_file_and_one_entry_point(tmp_path: Path) -> None:
         until(lambda: observer.speed() == 0.0, what="rest")
         assert observer.link.request(ResetRequest()) == Accepted()
         assert observer.link.request(RestartRequest()) == Refused("A real robot is not put back.")
+
+
+BROKEN = {
+    "leaving": "import sys\nsys.exit(7)\n",
+    "raising": "raise OSError('no such device')\n",
+    "needing": """
+from typing import Annotated
+import overreach as ov
+from overreach.parameters import number
+class Needing(ov.Law, frozen=True):
+    name = "needing"
+    gain: Annotated[float, number("gain", "", 0.0, 1.0)]
+""",
+    "unknown": """
+from __future__ import annotations
+import overreach as ov
+class Unknown(ov.Law, frozen=True):
+    name = "unknown"
+    gain: NoSuchType = 1.0
+""",
+}
+
+
+def test_a_plug_that_is_broken_breaks_nothing_else(tmp_path: Path) -> None:
+    """Plugs that leave, raise or cannot be described: they are listed with the reason; robot side and others go on."""
+    folders = []
+    for name, text in BROKEN.items():
+        (tmp_path / name).mkdir()
+        env = install(tmp_path / name, f"broken_{name}", text)
+        info = tmp_path / name / f"broken_{name}-1.0.dist-info"
+        (info / "entry_points.txt").write_text(
+            f"[overreach.laws]\n{name} = broken_{name}:{name.capitalize()}\n"
+            f"[overreach.robots]\n{name} = broken_{name}:{name.capitalize()}\n"
+        )
+        folders.append(env["PYTHONPATH"])
+    env |= {"PYTHONPATH": os.pathsep.join(folders)}
+    listed = run(env, "laws")
+    assert listed.returncode == 0, listed.stderr
+    for name in BROKEN:
+        assert re.search(rf"{name} +cannot be used: ", listed.stdout), listed.stdout
+    robots = run(env, "robots")
+    assert robots.returncode == 0, robots.stderr
+    assert "cannot be used: OSError: no such device" in robots.stdout
+    with robot_side(env=env) as (_, _, observer):
+        assert "exact" in observer.welcome.laws
+        assert not set(BROKEN) & set(observer.welcome.laws)
+
+
+def test_a_parameter_that_is_no_number_or_text_is_not_set_from_outside() -> None:
+    """A blend is chosen as a blend, not as a text that would break later."""
+    with pytest.raises(UnknownNameError, match="unknown parameter of the law exact 'blend'"):
+        load_law("exact", {"blend": "tanh"})

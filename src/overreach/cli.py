@@ -31,7 +31,7 @@ Add --help to any command for its options.
 
 
 def main() -> None:
-    """Entry point of `overreach`. Exit code 2 for what cannot be used, with one line that says why."""
+    """Entry point of `overreach`. Exit code 2 for a value that cannot be used, with one line that says why."""
     arguments = sys.argv[1:]
     if arguments in ([], ["help"], ["--help"], ["-h"]):
         print(HELP, end="")

@@ -25,8 +25,8 @@ class Clock(Protocol):
 class MonotonicClock:
     """The machine's monotonic clock: not moved by changes of the date.
 
-    spin_s: the last part of a wait [s] that is spent looking at the clock, not sleeping. A processor that
-    sleeps may take long to wake (in a virtual machine a millisecond and more); one that looks does not.
+    spin_s: the last part of a wait [s], which is spent polling the clock instead of sleeping. A processor that
+    sleeps may take long to wake (in a virtual machine a millisecond or more); one that polls does not.
     """
 
     def __init__(self, spin_s: float = 0.0) -> None:

@@ -56,7 +56,7 @@ def robot(
         robot: Name of the robot (see `overreach robots`).
         listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
         rate: Rate of the control loop [Hz], 50 to 1000.
-        name: What it is called in the network, by default as the robot: two robots need two names.
+        name: Its name in the network, by default the robot's own; two robots need two names.
         law: Name of the law it starts with (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         parent: End when this process, which started this one, ends.
@@ -80,7 +80,7 @@ def cockpit(
 
     Args:
         connect: Endpoint of the robot side, HOST:PORT or tcp/HOST:PORT.
-        robot: Name of the robot in the network, where there are several.
+        robot: Name of the robot in the network, if there are several.
         port: Port of the page; by default 8420, or a free one where that is taken.
         host: Address the page is served at. Anyone who can reach it can drive the robot.
         browser: Whether to open a browser.
@@ -98,14 +98,14 @@ def simulate(
     out: Path | None = None,
     json: bool = False,
 ) -> None:
-    """Run a scenario without a page, as fast as it goes, and say what happened.
+    """Run a scenario without a page, as fast as possible, and print what happened.
 
     Args:
         scenario: A built-in scenario (outward, inward, left, right, mixed, aside, aside_back, reach, held, dither,
             dither_pushed) or a TOML file.
         law: Name of the law (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
-        out: CSV file to write, one row a step.
+        out: CSV file to write, one row per step.
         json: Print the summary as JSON.
     """
     import msgspec
@@ -134,7 +134,7 @@ def simulate(
 
 @app.command
 def reproduce(out: Path) -> None:
-    """Reproduce the paper's figures, show what it does not, compare with what one would use instead: one page.
+    """Reproduce the paper's figures, show what the paper does not, and compare with the alternatives: one page.
 
     Args:
         out: Folder to write to: report.html, headline.md, results.json, figures/ and data/.
@@ -147,7 +147,7 @@ def reproduce(out: Path) -> None:
 
 @app.command
 def bench(json: Path | None = None) -> None:
-    """Measure what a control step costs: plain, compiled and many at once, beside the quadratic programs.
+    """Measure the cost of a control step: plain, compiled and batched, next to the quadratic programs.
 
     Args:
         json: File to write the numbers to.

@@ -1,4 +1,4 @@
-"""What this machine has, what it lacks and the line that brings it."""
+"""What this machine has, what it lacks, and the line that installs it."""
 
 from __future__ import annotations
 

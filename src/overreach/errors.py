@@ -8,7 +8,7 @@
     │   └── MissingExtraError         a library that is not installed, with the line that brings it
     └── LinkError                     the other half cannot be reached or does not fit
 
-Each message is one line: what was wrong, what was got, what is valid, what to do.
+Each message is one line: what is wrong, what was given, what is valid, what to do.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from collections.abc import Iterable
 LONGEST_NAME = 60
 """A name longer than this is cut before it is compared and shown."""
 LONGEST_TOLD = 160
-"""What an exception of somebody else's says is cut after this many characters."""
+"""The text of a third-party exception is cut after this many characters."""
 
 
 def told(error: BaseException) -> str:
@@ -27,7 +27,7 @@ def told(error: BaseException) -> str:
     try:
         text = " ".join(f"{type(error).__name__}: {error}".split())
         text = text.encode("utf-8", "backslashreplace").decode()  # what cannot be sent cannot be told
-    except Exception:  # its own text cannot be had
+    except Exception:  # its own text cannot be read
         text = type(error).__name__
     return text if len(text) <= LONGEST_TOLD else f"{text[:LONGEST_TOLD]}..."
 

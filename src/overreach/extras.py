@@ -1,4 +1,4 @@
-"""Libraries that only some parts need: had when they are installed, else one line that says how to get them."""
+"""Libraries that only some parts need: imported if installed; if not, one line says how to install them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plug is a name and parameters: one schema, which TOML, command line, page, lists and reports read.
+"""A plug is a name and parameters. TOML, command line, page, lists and reports all read one schema of them.
 
 class Mine(Law, frozen=True):
 name = "mine"
@@ -20,15 +20,15 @@ from overreach.types import Record
 Value = float | str
 """What a parameter may be set to from outside."""
 STEPS = 100
-"""A slider whose step is not given has this many."""
+"""The number of steps of a slider whose step is not given."""
 
 
 class Parameter(Record, frozen=True):
     """What is known of one parameter.
 
-    title, unit: for people; default: its value where none is given; low, high, step: the range that is offered to
-    people; least: what a valid value must be above (-inf where any finite number is); choices: valid texts, none for a
-    number.
+    title, unit: for people; default: its value if none is given; low, high, step: the range that is offered to
+    people; least: what a valid value must be above (None if any finite number is valid); choices: valid texts, empty
+    for a number.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Parameter(Record, frozen=True):
         raise SetupError(f"{self.name} must be a finite number{bound}, got {got}")
 
     def read(self, text: Value) -> Value:
-        """Return the value that `text`, as a command line has it, means; raises SetupError where it means none."""
+        """Return the value that command-line `text` stands for; raises SetupError if it stands for none."""
         if self.choices or not isinstance(text, str):
             return text
         try:
@@ -74,7 +74,7 @@ class Parameter(Record, frozen=True):
 def number(
     title: str, unit: str, low: float, high: float, step: float | None = None, above: float | None = None
 ) -> msgspec.Meta:
-    """Describe a number: offered from `low` to `high` in `step`s; valid if finite and, where given, > `above`."""
+    """Describe a number: offered from `low` to `high` in steps of `step`; valid if finite and, if given, > `above`."""
     step = (high - low) / STEPS if step is None else step
     return msgspec.Meta(title=title, extra={"unit": unit, "low": low, "high": high, "step": step, "least": above})
 
@@ -85,7 +85,7 @@ def choice(title: str, choices: Sequence[str]) -> msgspec.Meta:
 
 
 class Parameters(Record, frozen=True):
-    """Base of every plug: frozen parameters, each described by `number` or `choice`. Raises SetupError for bad ones."""
+    """Base of every plug: frozen parameters, each described by `number` or `choice`. Invalid ones raise SetupError."""
 
     name: ClassVar[str]
     """The name under which it is chosen."""
@@ -96,14 +96,15 @@ class Parameters(Record, frozen=True):
 
     @classmethod
     def made(cls, given: Mapping[str, Any], kind: str = "plug") -> Self:
-        """Return one with the parameters `given`; raises SetupError for an unknown name or a value of no use.
+        """Return a plug with the parameters `given`; raises SetupError for an unknown name or an invalid value.
 
-        Numbers may be given as texts, as a command line has them.
+        Numbers may be given as texts, as on a command line.
         """
         known = {one.name: one for one in schema(cls)}
-        for key in given:
-            if key not in cls.__struct_fields__:
-                raise UnknownNameError(f"parameter of the {kind} {cls.name}", key, cls.__struct_fields__)
+        for key, value in given.items():
+            own = key in cls.__struct_fields__ and not isinstance(value, str | int | float)  # a blend, a table
+            if key not in known and not own:
+                raise UnknownNameError(f"parameter of the {kind} {cls.name}", key, known)
         return cls(**{key: known[key].read(value) if key in known else value for key, value in given.items()})
 
     @property
@@ -114,14 +115,23 @@ class Parameters(Record, frozen=True):
 
 @cache
 def schema(plug: type[Parameters]) -> tuple[Parameter, ...]:
-    """Return what is known of the parameters of `plug`, in order; those without a description are for Python alone."""
+    """Return the described parameters of `plug`, in order; those without a description can be set only from Python."""
     found = []
     hints = get_type_hints(plug, include_extras=True)
     for field in msgspec.structs.fields(plug):
         for meta in get_args(hints[field.name])[1:]:
-            if isinstance(meta, msgspec.Meta) and meta.extra:
-                found.append(Parameter(field.name, meta.title or field.name, default=field.default, **meta.extra))
+            if isinstance(meta, msgspec.Meta) and meta.extra and "unit" in meta.extra:
+                found.append(_parameter(plug, field, meta))
     return tuple(found)
+
+
+def _parameter(plug: type[Parameters], field: msgspec.structs.FieldInfo, meta: msgspec.Meta) -> Parameter:
+    default = field.default
+    if default is msgspec.NODEFAULT:
+        raise SetupError(f"the parameter {field.name!r} of {plug.__name__} needs a default")
+    extra: dict[str, Any] = meta.extra or {}
+    default = default if isinstance(default, str) else float(default)
+    return Parameter(field.name, meta.title or field.name, default=default, **extra)
 
 
 def assignments(texts: Sequence[str]) -> dict[str, str]:
@@ -133,6 +143,6 @@ def assignments(texts: Sequence[str]) -> dict[str, str]:
 
 
 def summary(plug: type) -> str:
-    """Return the first line of what a plug says of itself."""
+    """Return the first line of a plug's docstring."""
     lines = (plug.__doc__ or "").strip().splitlines()
     return lines[0] if lines else ""

@@ -1,4 +1,4 @@
-"""Laws, whole bodies, blends, models and robots by name: entry points, loaded when asked for and not before."""
+"""Laws, whole bodies, blends, models and robots by name: entry points, each loaded only when it is asked for."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from overreach.law.blend import Blend
 from overreach.law.body import WholeBody
 from overreach.law.laws import Law
 from overreach.model.model import Model
-from overreach.parameters import Parameters, summary
+from overreach.parameters import Parameters, schema, summary
 
 LAWS = "overreach.laws"
 """Entry points to subclasses of `overreach.law.laws.Law`."""
 BODIES = "overreach.bodies"
-"""Entry points to subclasses of `overreach.law.body.WholeBody`: what plans all rates itself. Chosen as laws are."""
+"""Entry points to subclasses of `overreach.law.body.WholeBody`: these plan all rates themselves. Chosen as laws are."""
 BLENDS = "overreach.blends"
 """Entry points to subclasses of `overreach.law.blend.Blend`."""
 MODELS = "overreach.models"
-"""Entry points to makers of a description: () -> Model."""
+"""Entry points to functions that return a description: () -> Model."""
 
 USUAL = "planar"
-"""The robot that is taken where none is named."""
+"""The robot that is used if none is named."""
 
 KINDS: dict[str, tuple[str, type[Parameters]]] = {
     LAWS: ("law", Law), BODIES: ("law", WholeBody), BLENDS: ("blend", Blend)
@@ -48,12 +48,12 @@ def point(group: str, name: str) -> EntryPoint:
 
 
 def law_names() -> list[str]:
-    """Return the names of all that may be asked to share the hand's motion."""
+    """Return the names of all laws and whole bodies: everything that can be chosen with --law."""
     return names(LAWS, BODIES)
 
 
 def _plug(kind: str, name: str, *groups: str) -> type[Any]:
-    """Return the class of the plug called `name`; raises SetupError where there is none or it is none."""
+    """Return the class of the plug called `name`; raises SetupError if there is none or it is not valid."""
     for group in groups:
         if name in _points(group):
             plug = _points(group)[name].load()
@@ -77,31 +77,35 @@ def blend_plug(name: str) -> type[Blend]:
 
 
 def load_blend(name: str, parameters: Mapping[str, Any] | None = None) -> Blend:
-    """Return the blend called `name`; raises SetupError for a name or a parameter that there is not."""
+    """Return the blend called `name`; raises SetupError for an unknown name or parameter."""
     return blend_plug(name).made(parameters or {}, "blend")
 
 
 def usable(names_: Sequence[str], plug: Callable[[str], type[Parameters]]) -> dict[str, type[Parameters] | str]:
-    """Return name -> the plug's class or, where it is somebody else's and cannot be had, why not."""
+    """Return name -> the plug's class or, if it cannot be loaded, the reason."""
     found: dict[str, type[Parameters] | str] = {}
     for name in names_:
         try:
-            found[name] = plug(name)
-        except Exception as error:  # a plug-in may raise anything when it is imported
+            made = plug(name)
+            schema(made)  # described, too, or it cannot be offered
+            found[name] = made
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a plug-in may raise anything when it is imported, and leave, too
             found[name] = str(error) if isinstance(error, SetupError) else told(error)
     return found
 
 
 def blends_in(plug: type[Parameters]) -> bool:
-    """Say whether a law has a blend to be chosen."""
+    """Say whether a law takes a blend."""
     return "blend" in plug.__struct_fields__
 
 
 def load_law(name: str, parameters: Mapping[str, Any] | None = None, blend: Blend | None = None) -> WholeBody:
-    """Return the law, or whole body, called `name`, with `blend` where it has one to be chosen.
+    """Return the law or whole body called `name`, with `blend` if it takes one.
 
     Raises UnknownNameError with the valid names, SetupError for a parameter that cannot be used, or MissingExtraError
-    where it needs a library that is not installed.
+    if it needs a library that is not installed.
     """
     plug = law_plug(name)
     given = dict(parameters or {})
@@ -120,5 +124,13 @@ def load_model(name: str) -> Model:
 
 
 def summaries(*groups: str) -> dict[str, str]:
-    """Return name -> the first line of what a plug says of itself."""
-    return {name: summary(point.load()) for group in groups for name, point in sorted(_points(group).items())}
+    """Return name -> the first line of what a plug says of itself, or why it cannot be had."""
+    lines = {}
+    for name, point in sorted((name, point) for group in groups for name, point in _points(group).items()):
+        try:
+            lines[name] = summary(point.load())
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # as above
+            lines[name] = f"cannot be used: {told(error)}"
+    return lines

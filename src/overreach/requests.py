@@ -1,4 +1,4 @@
-"""What may be asked of the robot side beside motion; each is answered."""
+"""What may be asked of the robot side besides motion; each request is answered."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ class StopRequest(msgspec.Struct, frozen=True, tag="stop"):
 
 
 class ResetRequest(msgspec.Struct, frozen=True, tag="reset"):
-    """Release the latch of the stop; moves nothing, arms nothing."""
+    """Release the latches of stop and fault; moves nothing, arms nothing."""
 
 
 class ArmRequest(msgspec.Struct, frozen=True, tag="arm"):
@@ -21,7 +21,7 @@ class ArmRequest(msgspec.Struct, frozen=True, tag="arm"):
 
 
 class DisarmRequest(msgspec.Struct, frozen=True, tag="disarm"):
-    """Disarm, if it is this operator who armed."""
+    """Disarm, if this operator armed."""
 
     operator: int
 

@@ -1,4 +1,4 @@
-"""The records that travel along the way of one command.
+"""The records that carry a command from the operator to the motors, and the robot's state back.
 
 Units are m, rad and s; angles are counter-clockwise. Frames: the *world* (fixed), the *base*
 (origin at the drive's turning centre, x forward, y to the left) and the *hand* (the end effector,
@@ -22,7 +22,7 @@ class Record(msgspec.Struct, frozen=True, gc=False):
 
 
 class Frame(enum.StrEnum):
-    """The frame in which the operator's command is meant (see `overreach.law.frame`)."""
+    """The frame in which the operator's command is given (see `overreach.law.frame`)."""
 
     HAND = "hand"
     POLAR = "polar"
@@ -31,7 +31,7 @@ class Frame(enum.StrEnum):
 
 
 class Channel(Record, frozen=True):
-    """One rate of a robot that is written and measured: of the base, or of a joint.
+    """One rate of a robot, of its base or of a joint, that is written and measured.
 
     name: its symbol; moves: the name of the position that it moves; unit: of that position, "m" or "rad", so that rates
     are in unit/s and changes of rates in unit/s^2; rate_max, change_max: greatest |rate| and |d rate/dt|; lower, upper:
@@ -70,11 +70,11 @@ class BaseTwist(Record, frozen=True):
 
 
 class Command(Record, frozen=True, forbid_unknown_fields=True):
-    """One message of the operator's: the whole state of stick and dead-man. Its meaning travels with the numbers.
+    """One message from the operator: the whole state of stick and dead-man. Its meaning travels with the numbers.
 
     operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held: whether it is
     held; twist: the hand's velocity, in `frame` (see `overreach.law.frame`); gripper: its wanted opening, 0 to 1, None
-    where it is to stay; seen: time `t` of the newest state that the operator had before them [s], 0 where none.
+    to leave it as it is; seen: time `t` [s] of the newest state that the operator saw, 0 if none.
     """
 
     operator: int
@@ -90,7 +90,7 @@ class Command(Record, frozen=True, forbid_unknown_fields=True):
 class Pose(Record, frozen=True):
     """Where a body is: x, y, z [m] and its attitude as a unit quaternion q_w, q_x, q_y, q_z.
 
-    heading: the yaw [rad] where it is known as an angle of its own, as odometry counts it; None: that of the
+    heading: the yaw [rad] if it is known as a separate angle, as odometry counts it; None: take it from the
     quaternion.
     """
 
@@ -150,7 +150,7 @@ class Split(Record, frozen=True):
     mu, sigma: the base's share of linear and of angular motion, 0 (arm) to 1 (base);
     v_b [m/s], w_b [rad/s]: base twist; v_m = dl/dt [m/s], w_m = dpsi/dt [rad/s]: the arm's rates;
     scale: the part of the command that is feasible, 0 to 1 (all rates are scaled alike);
-    verdict: MOVING, or why a law has nothing to give (then all rates and the scale are 0).
+    verdict: MOVING, or why the law gives no motion (then all rates and the scale are 0).
     """
 
     mu: float
@@ -164,10 +164,10 @@ class Split(Record, frozen=True):
 
 
 class Plan(Record, frozen=True):
-    """A whole body's answer: who moves the hand, before any limit of the robot.
+    """A whole body's answer: who moves the hand, before the robot's limits are applied.
 
-    split: shares and rates; joints: joint rates [rad/s, m/s], where the plan decides them itself; None where the arm is
-    to find them for v_m and w_m.
+    split: shares and rates; joints: joint rates [rad/s, m/s] if the plan decides them itself; None if the arm is to
+    solve for them from v_m and w_m.
     """
 
     split: Split
@@ -175,12 +175,12 @@ class Plan(Record, frozen=True):
 
 
 class RobotState(Record, frozen=True):
-    """What a robot reports, any number of joints.
+    """What a robot with any number of joints reports.
 
-    t: its own stamp [s]; pose: of the base in the world; motion: of the base in its own frame, as measured, all six
-    components (a base that rocks rocks the hand); q, dq: joints [rad, m] and their rates, from the shoulder out;
-    gripper: its opening, 0 to 1; ages: how old [s] the base's and the joints' parts were at t; delay: dead time [s] of
-    what is written, where it is known.
+    t: the robot's own time stamp [s]; pose: of the base in the world; motion: measured twist of the base in its own
+    frame, all six components (a base that rocks rocks the hand); q, dq: joints [rad, m] and their rates, from the
+    shoulder out; gripper: its opening, 0 to 1; ages: age [s] at t of the base's and of the joints' measurements;
+    delay: dead time [s] of what is written, if it is known.
     """
 
     t: float
@@ -205,17 +205,17 @@ class RobotState(Record, frozen=True):
         dq: tuple[float, ...],
         gripper: float = 0.0,
     ) -> RobotState:
-        """Return the state of a robot whose base drives on level ground and not sideways."""
+        """Return the state of a robot whose base drives on level ground and does not move sideways."""
         return cls(t, Pose.flat(x_b, y_b, theta_b), Twist(v_b, 0.0, 0.0, 0.0, 0.0, w_b), q, dq, gripper)
 
     @property
     def x_b(self) -> float:
-        """The base's place in the world [m]."""
+        """The base's x in the world [m]."""
         return self.pose.x
 
     @property
     def y_b(self) -> float:
-        """The base's place in the world [m]."""
+        """The base's y in the world [m]."""
         return self.pose.y
 
     @property
@@ -235,7 +235,7 @@ class RobotState(Record, frozen=True):
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """All of its numbers but the joints': stamp, pose, motion, gripper, ages, delay."""
+        """All numbers except the joints': stamp, pose, motion, gripper, ages, delay."""
         pose = msgspec.structs.astuple(self.pose)
         heading = pose[:7] if pose[7] is None else pose
         motion = msgspec.structs.astuple(self.motion)
@@ -243,10 +243,10 @@ class RobotState(Record, frozen=True):
 
     @property
     def plain(self) -> RobotState:
-        """The same in Python's own floats; raises where a number is none. Drivers like to report those of numpy."""
-        if set(map(type, (*self.numbers, *self.q, *self.dq))) == FLOATS:
+        """The same state in Python's own floats: drivers often report numpy's. Raises if a value is not a number."""
+        if set(map(type, (*self.numbers, *self.q, *self.dq))) == FLOATS and type(self.q) is type(self.dq) is tuple:
             return self
-        t, *numbers = [float(number + 0.0) for number in self.numbers]  # a text is no number
+        t, *numbers = [float(number + 0.0) for number in self.numbers]  # raises for a text
         *numbers, gripper, base, joints, delay = numbers
         q, dq = [tuple([float(number + 0.0) for number in one]) for one in (self.q, self.dq)]
         return RobotState(t, Pose(*numbers[:-6]), Twist(*numbers[-6:]), q, dq, gripper, (base, joints), delay)
@@ -255,7 +255,7 @@ class RobotState(Record, frozen=True):
 class Decision(Record, frozen=True):
     """What a controller decided for one period.
 
-    state: the newest that is believed of the robot; polar: where the hand is; u: its commanded velocity; split: the
+    state: the newest believed state of the robot; polar: where the hand is; u: its commanded velocity; split: the
     shares, with the rates as they are written; joints: joint rates [rad/s, m/s]; scale: part of the command that is
     carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty.
     """

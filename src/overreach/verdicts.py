@@ -1,4 +1,4 @@
-"""What is said of motion and of commands: one table of verdicts, weightiest first."""
+"""What the gate says of motion, and the one table of verdicts on commands, weightiest first."""
 
 from __future__ import annotations
 
@@ -62,5 +62,5 @@ class Verdict(enum.StrEnum):
 
 
 def weightier(one: Verdict, other: Verdict) -> Verdict:
-    """Return which of two verdicts is to be told: the one that stands higher in the table."""
+    """Return the weightier of two verdicts: the one that is higher in the table."""
     return one if one.severity <= other.severity else other

@@ -135,6 +135,20 @@ def test_whole_steps_end_where_they_should(l: float, psi: float, v_m: float, w_m
     assert verdict is Verdict.MOVING
 
 
+@given(st.floats(3.3, 6.0), st.sampled_from([-1.0, 1.0]), rates, rates)
+def test_whole_steps_of_an_elbow_past_half_a_turn(bend: float, side: float, v_m: float, w_m: float) -> None:
+    """Where joints may turn further than half a turn, a whole step goes on from where they are, and jumps nowhere."""
+    theta, dt = (0.5, side * bend), 0.005
+    chain = arm(0.5, 0.5).at(theta, Mount())
+    if abs(math.sin(bend)) < 0.2 or not 0.1 < chain.l < 0.95:
+        return
+    assert chain.rates(0.0, 0.0, NO_REST, dt)[0] == pytest.approx((0.0, 0.0), abs=1e-9)
+    whole, moment = chain.rates(v_m, w_m, NO_REST, dt)[0], chain.rates(v_m, w_m, NO_REST, 0.0)[0]
+    assert whole == pytest.approx(moment, abs=0.5)
+    after = arm(0.5, 0.5).at((theta[0] + whole[0] * dt, theta[1] + whole[1] * dt), Mount())
+    assert (after.l, wrap(after.psi - chain.psi)) == pytest.approx((chain.l + v_m * dt, w_m * dt), abs=1e-9)
+
+
 def test_whole_steps_end_at_the_reach() -> None:
     """A whole step beyond the arm's end goes to its end and says so."""
     theta = inverse(0.99, 0.2, 0.5, 0.5, 1)

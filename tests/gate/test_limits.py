@@ -50,7 +50,7 @@ def test_slew_is_bounded_and_straight(now: Twist, goal: Twist, dt: float) -> Non
     """The command moves straight towards its goal, by at most a_max dt, and gets there."""
     twist, limited = slew(now, goal, LIMITS, dt)
     bounds = tuple(most * dt for most in FASTEST)
-    assert worst(change(now, twist), (bounds[0], bounds[1], bounds[2])) <= 1.0 + 1e-7
+    assert worst(change(now, twist), (bounds[0], bounds[1], bounds[2])) <= 1.0 + 1e-8
     way, whole = astuple(change(now, twist)), astuple(change(now, goal))
     for k in range(6):
         for j in range(k):

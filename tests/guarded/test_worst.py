@@ -185,7 +185,10 @@ def test_every_single_fault_of_a_law(field: str, bad: float, at: int, v_c: float
         ("nonsense", "AttributeError"),
         (Split(0.0, 0.0, "fast", 0.0, 0.0, 0.0), "TypeError"),  # type: ignore[arg-type]
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict="go"), "answered the verdict 'go'"),  # type: ignore[arg-type]
-        (Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.1,)), "ValueError"),
+        (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict="moving"), "the verdict 'moving'"),  # type: ignore[arg-type]
+        (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict="no_solution"), "the verdict 'no_"),  # type: ignore[arg-type]
+        (Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.1, 0.1, 0.1)), "answered 3 joint rates for 2 joints"),
+        (Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.1,)), "answered 1 joint rates for 2 joints"),
         (Plan(Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.1, math.nan)), "rates too great"),
         (Split(0.0, 0.0, 1e308, 1e308, 1e308, 1e308), "rates too great"),
         (Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, verdict=Verdict.FAULT), "answered the verdict 'fault'"),

@@ -19,7 +19,7 @@ from overreach.model.workspace import Workspace
 from overreach.types import BaseTwist, Command, Pose
 
 STATIC = Path(overreach.__file__).parent / "cockpit" / "static"
-FINGERPRINTS = {2: "6fb3970779d3a28e"}
+FINGERPRINTS = {2: "6162737beaea6836"}
 """Protocol -> what its messages are, docstrings included: what a field means stands there."""
 
 

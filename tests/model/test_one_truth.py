@@ -7,7 +7,6 @@ import pytest
 
 from overreach.arm.mount import Mount
 from overreach.law.laws import Exact
-from overreach.model.model import placed
 from overreach.model.planar import load_planar, planar
 from overreach.plugs import load_model
 from overreach.robots.kinematic import KinematicRobot
@@ -25,7 +24,7 @@ def test_there_is_one_robot_called_planar() -> None:
 def test_a_law_made_by_hand_is_the_law_by_name(mount: Mount) -> None:
     """With an offset shoulder `exact`, however it is made, is exact: the law asks the model for it."""
     scenario = load_scenario("aside")
-    model = placed(scenario.model, mount, scenario.model.workspace)
+    model = scenario.model.placed(mount, scenario.model.workspace)
     scenario = msgspec.structs.replace(scenario, model=model, duration=6.0, dt=0.002)
     by_name, by_hand = simulate(scenario, "exact"), simulate(scenario, Exact(scenario.blend))
     assert by_hand.summary.ee_error_max < 1e-9

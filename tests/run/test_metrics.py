@@ -9,8 +9,9 @@ from overreach.law.blend import Step
 from overreach.law.laws import Exact, Paper
 from overreach.model.planar import load_planar, planar
 from overreach.run import metrics
+from overreach.run.row import Row
 from overreach.run.scenario import load_scenario, parse_scenario
-from overreach.run.simulate import Row, simulate
+from overreach.run.simulate import simulate
 from overreach.run.summary import LINES, table
 from overreach.types import Frame, Split
 from tests.laws import Given, exact

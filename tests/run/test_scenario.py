@@ -8,8 +8,9 @@ import pytest
 
 from overreach.errors import SetupError
 from overreach.plugs import law_names
+from overreach.run.row import Row
 from overreach.run.scenario import builtin_scenarios, load_scenario, parse_scenario
-from overreach.run.simulate import Row, simulate
+from overreach.run.simulate import simulate
 from overreach.types import Frame
 
 COMMAND = "[command]\nduration = 1.0\nsegments = [{t = 0.0, v_c = 0.1, w_c = 0.0}]\n"

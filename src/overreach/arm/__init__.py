@@ -1,1 +1,1 @@
-"""From the EE velocity that is left to the arm to joint rates."""
+"""Arms: the joint rates for the part of the EE velocity that is left to the arm."""

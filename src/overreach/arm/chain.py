@@ -1,4 +1,4 @@
-"""What is asked of an arm, whatever it is made of: where its hand is, and which joint rates move it so.
+"""What any arm must provide: where its hand is, and which joint rates give it a wanted motion.
 
 (l, psi): the hand about the shoulder, l [m] along the ground, psi [rad] from the arm's own x axis
 polar axes: r outward from the shoulder to the hand, t counter-clockwise, z up; in the base frame
@@ -14,7 +14,7 @@ from overreach.types import Channel
 from overreach.verdicts import Verdict
 
 Rest = tuple[float, float, float, float]
-"""What the arm owes beyond the plane: v_z [m/s], then w_r, w_t, w_z [rad/s] in polar axes."""
+"""The hand rates that the arm owes beyond the plane: v_z [m/s], then w_r, w_t, w_z [rad/s] in polar axes."""
 NO_REST: Rest = (0.0, 0.0, 0.0, 0.0)
 Moved = tuple[float, float, float, float, float, float]
 """v_m [m/s], w_m [rad/s], v_z [m/s], w_r, w_t, w_z [rad/s]."""
@@ -55,18 +55,18 @@ class Chain(Protocol):
         ...
 
     def towards_manipulability(self) -> tuple[float, ...]:
-        """Return the gradient of the manipulability by the joints."""
+        """Return the gradient of the manipulability with respect to the joints."""
         ...
 
     def jacobian(self) -> tuple[tuple[float, ...], ...]:
-        """Return d(moved)/d(joint rates): six rows, of l, psi, z and the rotations about r, t, z; a column a joint."""
+        """Return d(moved)/d(joint rates): rows of l, psi, z and the rotations about r, t, z; one column per joint."""
         ...
 
     def rates(self, v_m: float, w_m: float, rest: Rest, dt: float) -> tuple[tuple[float, ...], Verdict]:
-        """Return the joint rates that, held for `dt` [s], move the hand so, and MOVING or what keeps it from that.
+        """Return the joint rates that, held for `dt` [s], give this motion, and MOVING or what prevents it.
 
-        The period ends exactly at (l + v_m dt, psi + w_m dt); with dt = 0 these are the rates of this moment. An arm
-        leaves out the rows that it does not have (`Arm.rows`). Always finite; near a singularity it gives way.
+        The period ends exactly at (l + v_m dt, psi + w_m dt); with dt = 0 these are the instantaneous rates. An arm
+        leaves out the rows that it lacks (`Arm.rows`). Always finite; near a singularity it gives way.
         """
         ...
 
@@ -90,7 +90,7 @@ class Arm(Protocol):
 
     @property
     def branch(self) -> tuple[tuple[float, float], ...]:
-        """Per joint the least and greatest position [rad] in which the posture is kept, on its own branch."""
+        """Per joint, the least and greatest position [rad] between which the posture stays on its own branch."""
         ...
 
     @property

@@ -27,7 +27,7 @@ Room = tuple[tuple[float, float], ...]
 
 
 def room(joints: Sequence[Channel], theta: tuple[float, ...], dt: float) -> Room:
-    """Return `fastest_towards` both ends for every joint, braking at half of what the joint can."""
+    """Return `fastest_towards` each limit for every joint, braking at half of the joint's acceleration limit."""
     return tuple(
         [
             (

@@ -7,7 +7,7 @@ With links a, b [m], joints theta_1, theta_2 [rad], e = a + b cos theta_2, f = b
 from __future__ import annotations
 
 import math
-from math import acos, atan2, copysign, cos, hypot, sin
+from math import acos, atan2, copysign, cos, hypot, pi, sin
 from typing import final
 
 from overreach.arm.chain import Moved, Point, Rest
@@ -21,7 +21,7 @@ SINE_DAMPED = 0.15
 """Below this |sin theta_2| the inverse of the Jacobian is damped: within 9 degrees of straight or folded."""
 
 L_LEAST = 1e-6
-"""Shortest length [m] that is divided by: at l = 0 the bearing has no meaning."""
+"""Smallest length [m] that is used as a divisor: at l = 0 the bearing has no meaning."""
 
 
 def forward(theta_1: float, theta_2: float, a: float, b: float) -> tuple[float, float]:
@@ -202,9 +202,9 @@ class Chain2R:
         return (0.0, j_l), (1.0, j_psi), none, none, none, (1.0, 1.0)
 
     def rates(self, v_m: float, w_m: float, _rest: Rest, dt: float) -> tuple[tuple[float, float], Verdict]:
-        """Return the joint rates [rad/s] that end a period `dt` [s] where it should end.
+        """Return the joint rates [rad/s] with which a period of `dt` [s] ends where it should.
 
-        Within SINE_DAMPED of straight or folded they are those of this moment, damped, as with dt = 0.
+        Within SINE_DAMPED of straight or folded they are the instantaneous rates, damped, as with dt = 0.
         """
         a, b, s2, l = self._a, self._b, self._s2, self.l
         if dt > 0.0 and not -SINE_DAMPED < s2 < SINE_DAMPED:
@@ -212,12 +212,14 @@ class Chain2R:
             held = max(abs(a - b), min(a + b, target))
             end_1, end_2 = inverse(held, self._bearing + w_m * dt, a, b, 1 if s2 > 0.0 else -1)
             theta_1, theta_2 = self.joints
+            if not -pi < theta_2 <= pi:  # the inverse knows no turns
+                end_2 += 2.0 * pi * round((theta_2 - end_2) / (2.0 * pi))
             verdict = Verdict.MOVING if held == target else Verdict.OUT_OF_REACH
             return ((end_1 - theta_1) / dt, (end_2 - theta_2) / dt), verdict
         one, two, damped = joint_rates(self._c2, s2, l, v_m, w_m, a, b, self._elbow)
         if not damped:
             return (one, two), Verdict.MOVING
-        outward = (v_m > 0.0) == (self._c2 > 0.0)  # straight and farther out, or folded and in
+        outward = (v_m > 0.0) == (self._c2 > 0.0)  # outward when straight, or inward when folded
         return (one, two), Verdict.OUT_OF_REACH if outward else Verdict.SINGULAR
 
     def moved(self, rates: tuple[float, ...]) -> Moved:

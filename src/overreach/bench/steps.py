@@ -21,7 +21,8 @@ from overreach.law.body import WholeBody
 from overreach.law.frame import FRAMES, meant, of_two
 from overreach.law.laws import Exact, constants
 from overreach.model.planar import planar
-from overreach.run.simulate import Row, simulate
+from overreach.run.row import Row
+from overreach.run.simulate import simulate
 from overreach.types import Frame, HandTwist, Twist
 
 SLOW_EVERY = 5

@@ -1,4 +1,4 @@
-"""`overreach drive` and `overreach cockpit`: processes, ports and the end of everything."""
+"""`overreach drive` and `overreach cockpit`: processes, ports and an orderly end."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ END_WAIT_S = 2.0
 
 
 def bind_page(host: str, port: int | None) -> socket.socket:
-    """Return a listening socket for the page; without `port`, USUAL_PORT or else a free one.
+    """Return a listening socket for the page; without `port` at USUAL_PORT or, if that is taken, a free one.
 
-    Raises SetupError where the port asked for is taken or not valid, or the host is not this machine's.
+    Raises SetupError if the given port is taken or not valid, or if the host is not this machine's.
     """
     if not host:
         raise SetupError("--host must be an address or a name, such as 127.0.0.1 or 0.0.0.0")
@@ -74,7 +74,7 @@ def _exit_on_signals() -> None:
 
 @contextmanager
 def robot_process(robot: str, rate: float, law: Sequence[str] = ()) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
-    """Run the robot side as a process of its own; yield its endpoint and it. It ends with the block."""
+    """Run the robot side in a process of its own; yield its endpoint and the process, which ends with the block."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "overreach", "robot", robot, "--listen", endpoint]
     command += ["--rate", str(rate), "--parent", str(os.getpid()), *law]
@@ -115,7 +115,7 @@ def run_drive(
 
 
 def run_cockpit(connect: str, host: str, port: int | None, browser: bool, robot: str = "") -> None:
-    """Run the operator side alone, for a robot side that is already there, of that name where there are several."""
+    """Run the operator side alone, for a robot side that is already running; `robot`: its name if there are several."""
     from overreach.link.messages import check_name
 
     endpoint = check_endpoint(connect)

@@ -1,4 +1,4 @@
-"""Who is served: only this cockpit's own pages, under an address that it is known by."""
+"""Who is served: only this cockpit's own pages, under an address that names this server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page: what stands where. What moves on it is drawn by `static/`, from the WebSocket."""
+"""The page's layout. What moves on it is drawn by `static/`, from the WebSocket."""
 
 from __future__ import annotations
 

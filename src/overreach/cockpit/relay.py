@@ -20,9 +20,9 @@ from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartR
 from overreach.types import Command
 
 SAID_MOST = 32
-"""Answers that wait for a page that does not read; older ones are dropped."""
+"""How many answers wait for a page that does not read; older ones are dropped."""
 ASKED_MOST = 8
-"""Questions of one page that may wait for their answers."""
+"""How many questions of one page may wait for their answers."""
 OPERATOR_BITS = 52
 """Operator numbers are random and fit into a JavaScript number."""
 
@@ -54,7 +54,7 @@ class Page:
         self._wake.set()
 
     async def send_forever(self) -> None:
-        """Send what there is to send, until the page is gone."""
+        """Send whatever is waiting, until the page is gone."""
         while True:
             await self._wake.wait()
             self._wake.clear()
@@ -108,7 +108,7 @@ class Relay:
         task.add_done_callback(self._tasks.discard)
 
     async def _refresh(self) -> None:
-        """Fetch settings that somebody changed and tell everybody."""
+        """Fetch settings that somebody has changed, and tell every page."""
         try:
             welcome = await asyncio.to_thread(self._link.welcome, 1.0)
         except LinkError:
@@ -121,20 +121,20 @@ class Relay:
             told(self.settings)
 
     async def ask(self, request: AnyRequest) -> Accepted | Refused:
-        """Ask the robot side, without holding up the pages. Stop has a thread of its own: it waits for nobody."""
+        """Ask the robot side, without holding up the pages. Stop has its own thread and waits for nothing else."""
         if isinstance(request, StopRequest):
             return await asyncio.get_running_loop().run_in_executor(self._stopper, self._link.request, request)
         return await asyncio.to_thread(self._link.request, request)
 
     async def configure(self, settings: Settings) -> Accepted | Refused:
-        """Ask for other settings; every page hears of them when they are in force."""
+        """Ask for new settings; every page is told when they are in force."""
         answer = await self.ask(ConfigureRequest(settings))
         if isinstance(answer, Accepted):
             self.settings = settings
         return answer
 
     async def serve(self, socket: WebSocket) -> None:
-        """Talk with one page until it goes; then its robot is let go of."""
+        """Serve one page until it is gone; then let go of the robot and disarm for it."""
         page = Page(socket)
         page.say(wire.encode(wire.Greeting(page.operator, self.welcome, self.settings, self.scene)))
         self._pages.add(page)
@@ -143,7 +143,7 @@ class Relay:
             while True:
                 await self._take(page, await socket.receive_text())
         except (WebSocketDisconnect, RuntimeError, KeyError):
-            pass  # gone, or it sent something that is no text
+            pass  # gone, or it sent something other than text
         finally:
             self._pages.discard(page)
             sender.cancel()

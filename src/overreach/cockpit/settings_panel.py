@@ -1,4 +1,4 @@
-"""The settings: NiceGUI's controls made from the plugs' own descriptions, the robot side as the judge."""
+"""The settings: NiceGUI controls made from the plugs' own descriptions; the robot side judges every change."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from overreach.types import Frame
 THROTTLE_S = 0.1
 """A slider that is dragged asks for new settings at most this often."""
 EDGE_M = 0.05
-"""The workspace is offered this far [m] short of the ends of the arm's reach."""
+"""The workspace's range ends this far [m] short of the ends of the arm's reach."""
 NONE = Plug("", ())
 
 Change = Callable[[Settings], Settings]
@@ -24,7 +24,7 @@ Change = Callable[[Settings], Settings]
 
 @final
 class SettingsPanel:
-    """One visitor's controls. What the robot side refuses is told and taken back."""
+    """One visitor's controls. What the robot side refuses is shown and undone."""
 
     def __init__(self, relay: Relay) -> None:
         self._relay = relay
@@ -111,7 +111,7 @@ class SettingsPanel:
         return toggle.props(f'unelevated no-caps spread id="set-{field}" aria-label="{label}"')
 
     def _choice(self, kind: str, name: str) -> Choice:
-        """Return a plug as it is chosen anew: with its parameters as they stand here."""
+        """Return the choice of a plug, with its parameters as its controls show them."""
         return Choice(name, {key: control.value for key, control in self._own.get((kind, name), {}).items()})
 
     def _line(self, label: str, unit: str) -> ui.label:
@@ -154,7 +154,7 @@ class SettingsPanel:
         return handle
 
     async def _ask(self, change: Change) -> None:
-        """Ask for the settings in force, changed. One question at a time; what comes meanwhile is added up."""
+        """Ask for the settings in force with `change`. One question at a time; changes made meanwhile are combined."""
         self._wanted.append(change)
         if self._asking:
             return
@@ -166,7 +166,7 @@ class SettingsPanel:
                 try:
                     for one in changes:
                         wanted = one(wanted)
-                except ValueError as error:  # a workspace that is none
+                except ValueError as error:  # not a valid workspace
                     ui.notify(str(error), type="warning", position="top")
                     break
                 if wanted != self._relay.settings:
@@ -184,7 +184,7 @@ class SettingsPanel:
         self.show(self._relay.settings)
 
     def show(self, settings: Settings) -> None:
-        """Show `settings`, which are in force; not while this visitor's own hand is on a control."""
+        """Show `settings`, which are in force, unless a change of this visitor's own is still being asked for."""
         if self._asking:
             return
         self._quiet = True

@@ -1,6 +1,6 @@
 """What page and cockpit say to each other over the WebSocket: JSON, one typed definition of every message.
 
-The page's own words carry no operator: the cockpit gives each connection its number, and adds it.
+A page's messages carry no operator: the cockpit gives each connection its number, and adds it.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ FromPage = CommandFromPage | AskFromPage
 
 
 class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
-    """First word to a page: its operator number, the robot, and the settings in force with how they look."""
+    """First message to a page: its operator number, the robot, the settings in force, and how to draw them."""
 
     operator: int
     robot: Welcome
@@ -58,7 +58,7 @@ class StateToPage(msgspec.Struct, frozen=True, tag="state"):
 
 
 class AnswerToPage(msgspec.Struct, frozen=True, tag="answer"):
-    """Whether what was asked for was done, and if not why."""
+    """Whether the request was carried out and, if not, why."""
 
     id: int
     done: bool
@@ -66,7 +66,7 @@ class AnswerToPage(msgspec.Struct, frozen=True, tag="answer"):
 
 
 class SettingsToPage(msgspec.Struct, frozen=True, tag="settings"):
-    """The settings have changed, and how they look."""
+    """The changed settings, and how to draw them."""
 
     settings: Settings
     scene: Scene

@@ -1,4 +1,4 @@
-"""What a robot can do in one period, given where it is and what was written last: one scale for the whole command."""
+"""What a robot can do in one period, from where it is and what was written last: one scale for the whole command."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from overreach.verdicts import Verdict
 
 
 class Bounds:
-    """Speed, acceleration and joint limits of a robot, from the rates that its guard has written last."""
+    """Speed, acceleration and joint limits of a robot, applied from the rates that its guard wrote last."""
 
     def __init__(self, model: Model, guard: Guard) -> None:
         each = channels(model)
@@ -24,7 +24,7 @@ class Bounds:
         self._free: list[tuple[float, float]] = []
 
     def keep(self, rates: tuple[float, ...], q: tuple[float, ...], dt: float) -> bool:
-        """Say whether no limit binds: all `rates` can be written at joints `q`, as they are."""
+        """Say whether no limit binds: all `rates` can be written unchanged at joints `q`."""
         if dt != self._dt:
             self._prepare(dt)
         for angle, (low, high) in zip(q, self._free, strict=True):
@@ -33,7 +33,7 @@ class Bounds:
         return within(rates, self._guard.written, self._tops, self._steps)
 
     def _prepare(self, dt: float) -> None:
-        """Make ready what a period of `dt` [s] allows: changes of rates, and where no limit slows a joint."""
+        """Precompute, for a period of `dt` [s], the allowed changes of rates and where no limit slows a joint."""
         self._dt, self._steps = dt, tuple([change * dt for change in self._changes])
         self._free = []
         for joint in self._joints:
@@ -42,13 +42,13 @@ class Bounds:
             self._free.append((joint.lower + margin, joint.upper - margin))
 
     def room(self, q: tuple[float, ...], dt: float) -> Room:
-        """Return how fast each joint may move at `q`, either way."""
+        """Return how fast each joint may move at `q`, in either direction."""
         return room(self._joints, q, dt)
 
     def scale(self, rates: tuple[float, ...], owed: tuple[float, ...], free: Room) -> tuple[float, Verdict]:
-        """Return the scale of the command at which no limit is passed, and why.
+        """Return the greatest scale of the command at which no limit is passed, and why.
 
-        rates: of base and joints at scale 1; owed: what the joints owe the base whatever the command is, a part of it;
+        rates: of base and joints at scale 1; owed: the part of them that the joints owe the base at any scale;
         free: the joints' `room`.
         """
         v_b, w_b, *joints = rates
@@ -64,12 +64,12 @@ class Bounds:
         return scale, verdict
 
     def base(self, v_b: float, w_b: float) -> tuple[float, float]:
-        """Return the base's rates, held to its accelerations."""
+        """Return the base's rates, clamped to its acceleration limits."""
         (was_v, was_w, *_), (dv, dw, *_) = self._guard.written, self._steps
         return clamp_change(v_b, was_v, dv), clamp_change(w_b, was_w, dw)
 
     def joints(self, rates: tuple[float, ...], free: Room) -> tuple[float, ...]:
-        """Return joint rates held to their limits: to what still stops in time, then to the accelerations."""
+        """Return joint rates clamped first to what can still stop in time, then to the acceleration limits."""
         return tuple(
             [
                 clamp_change(max(low, min(high, rate)), was, change)

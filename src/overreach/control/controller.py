@@ -11,18 +11,20 @@ from msgspec.structs import astuple
 from overreach.arm.chain import NO_REST, Chain, Rest
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
-from overreach.errors import LONGEST_NAME, told
+from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
 from overreach.law.authority import arm_residual
-from overreach.law.body import UnusableError, WholeBody, checked
+from overreach.law.body import Planner, UnusableError, WholeBody, checked
 from overreach.law.frame import FRAMES, heading_rate, meant
 from overreach.model.model import Model, channels
 from overreach.types import FLOATS, Decision, Frame, HandTwist, PolarState, RobotState, Split, Twist
 from overreach.verdicts import Motion, Verdict, weightier
 
 NO_TWIST, NO_MOTION = Twist(), HandTwist()
-MOVING = Verdict.MOVING  # looked up a dozen times a tick: a name of the module's is quicker than a member
+UNIT = 0.01
+"""How far the square of an attitude's quaternion may be from 1."""
+MOVING = Verdict.MOVING  # used a dozen times per tick: a module's name is faster to look up than an enum's member
 
 _with = msgspec.structs.replace
 
@@ -30,9 +32,9 @@ _with = msgspec.structs.replace
 class HandController:
     """Turns a gated twist into base twist and joint rates. Keeps the hand's heading and what it last asked for.
 
-    Its limits hold whatever the law says and the robot reports; there is no switch for them. Where that cannot be, it
-    ramps to zero and says FAULT until `reset`. Each period ends exactly where it should: at (l + v_m dt, psi + w_m dt).
-    ramp_s: how long the command's own ramp takes [s].
+    Its limits hold whatever the law says and the robot reports; nothing switches them off. If they cannot be kept,
+    it ramps to zero and says FAULT until `reset`. Each period ends exactly at (l + v_m dt, psi + w_m dt).
+    ramp_s: duration of the command's own ramp [s].
     """
 
     def __init__(self, model: Model, law: WholeBody, ramp_s: float = 0.0) -> None:
@@ -51,10 +53,15 @@ class HandController:
     def _bounded(self, model: Model) -> Bounds:
         return Bounds(model, self.guard)
 
-    def configure(self, law: WholeBody, model: Model | None = None) -> None:
-        """Change the law. model: the same robot with another workspace. Changes nothing where it raises."""
+    def configure(self, law: WholeBody, model: Model | None = None, planner: Planner | None = None) -> None:
+        """Change the law. Changes nothing where it raises.
+
+        model: the same robot with another workspace; planner: that of the law for it, where it has been made before.
+        """
         model = model or self.model
-        name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), law.planner(model)
+        if model.mount != self.model.mount or len(model.arm.channels) != len(self._still):
+            raise SetupError("a law is changed for the same robot: its mount and its joints stay as they are")
+        name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
         self.model = model
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
 
@@ -66,11 +73,13 @@ class HandController:
         self._shares = (0.0, 0.0)
         posture = self._arm.posture(start.l, start.psi)
         self._believed = RobotState.flat(-inf, 0.0, 0.0, 0.0, 0.0, 0.0, posture, self._still)
+        self.chain = self._arm.at(posture, self.model.mount)
+        """The arm as it was last: whatever raises, there is one."""
         self._feedback.restart()
         self.guard.restart()
 
     def reset(self) -> None:
-        """Leave FAULT. Moves nothing; what caused it is looked at anew."""
+        """Leave FAULT. Moves nothing; what caused it is checked afresh."""
         if self.guard.fault:
             self._feedback.reset()
         self.guard.reset()
@@ -96,15 +105,15 @@ class HandController:
     ) -> Decision:
         """Return the rates for the period `dt` [s] that begins in `state`, for a twist in `frame`. Raises nothing.
 
-        state: None where there is none; the last is kept. now [s]: the time, on the clock of `state.t`; by default that
-        of a state that is newer, else dt later. motion: what a gate says; by default a twist that is not 0 may move.
-        frame: by default the last. With another frame the hand's heading starts anew at its bearing.
+        state: None if there is none; the last one is kept. now [s]: the time, on the clock of `state.t`; by default
+        that of a newer state, else dt later. motion: what the gate says; by default ALLOWED for a nonzero twist.
+        frame: by default the last one. With a new frame, the hand's heading starts again from its bearing.
         """
         if frame is not None and frame is not self.frame:
             self.frame, self._angle, self._theta_e = frame, FRAMES[frame], None
         try:
             self._believe(state, dt, now)
-        except Exception as error:  # a driver that is a plug-in may report anything
+        except Exception as error:  # a plug-in driver may report anything
             self.guard.latch(f"The robot's feedback cannot be used: {told(error)}.")
         state = self._believed
         finite = isfinite(sum(astuple(twist)))
@@ -112,17 +121,21 @@ class HandController:
             twist = NO_TWIST
         if motion is None:
             motion = Motion.NONE if twist == NO_TWIST else Motion.ALLOWED
-        chain = self._arm.at(state.q, self.model.mount)
+        try:
+            self.chain = chain = self._arm.at(state.q, self.model.mount)
+        except Exception as error:  # an arm that is a plug-in
+            self.guard.latch(f"The arm's kinematics raised {told(error)}.")
+            chain = self.chain
         try:
             decision = self._moving(chain, state, twist, dt) if self._asks(motion) else self._at_rest(chain, state)
         except (KeyboardInterrupt, SystemExit):
             raise
-        except BaseException as error:  # as above, a law; some libraries' panics are no Exception
+        except BaseException as error:  # likewise a law; some libraries' panics are not an Exception
             what = f"answered {error}" if isinstance(error, UnusableError) else f"raised {told(error)}"
             self.guard.latch(f"The law {self.name!r} {what}.")
             decision = self._at_rest(chain, state)
         if decision.split.verdict is not MOVING:
-            motion = Motion.NONE  # the law has nothing to give
+            motion = Motion.NONE  # the law gives no motion
         decision, rates = self._last_word(wanted := decision, chain, motion, dt)
         self._feedback.asked.add(rates, self._now)
         if self.guard.fault:
@@ -133,12 +146,11 @@ class HandController:
         return decision if finite else _with(decision, verdict=weightier(Verdict.NOT_FINITE, decision.verdict))
 
     def ramp(self, dt: float) -> Decision:
-        """Return the next rates on the way to zero: without state, command or law. For the end of every run."""
-        chain = self._arm.at(self._believed.q, self.model.mount)
-        return self._written(self._at_rest(chain, self._believed), chain, self.guard.ramp(dt))
+        """Return the next rates of the ramp to zero, without state, command or law. Used at the end of every run."""
+        return self._written(self._at_rest(self.chain, self._believed), self.chain, self.guard.ramp(dt))
 
     def _believe(self, state: RobotState | None, dt: float, now: float | None) -> None:
-        """Keep the time, and `state` where it can be believed; else latch the fault and keep the last that was."""
+        """Keep the time, and `state` if it can be believed; else latch a fault and keep the last believed state."""
         stamp = self._feedback.stamp
         if state is None:
             if stamp == -inf:
@@ -147,21 +159,24 @@ class HandController:
             state = self._believed
         self._now = now if now is not None else state.t if state.t > stamp else self._now + dt
         numbers = state.numbers
-        if set(map(type, (*numbers, *state.q, *state.dq))) != FLOATS:  # drivers like to report those of numpy
-            state = state.plain
+        if set(map(type, (*numbers, *state.q, *state.dq))) != FLOATS or not type(state.q) is type(state.dq) is tuple:
+            state = state.plain  # drivers like to report numbers of numpy, or a list that they fill again and again
             numbers = state.numbers
         pose, motion = state.pose, state.motion
         positions = (complex(pose.x, pose.y), pose.yaw, *state.q)
         wrong = self._feedback.check(state.t, positions, (motion.v_x, motion.w_z, *state.dq), self._now)
         if not wrong and not isfinite(sum(numbers)):
             wrong = "The robot's feedback of the base is not finite."
+        size = pose.q_w * pose.q_w + pose.q_x * pose.q_x + pose.q_y * pose.q_y + pose.q_z * pose.q_z
+        if not wrong and not -UNIT <= size - 1.0 <= UNIT:
+            wrong = "The robot's feedback of the base's attitude is no unit quaternion."
         if wrong:
             self.guard.latch(wrong)
         elif state.t >= self._feedback.stamp:
             self._believed = state
 
     def _moving(self, chain: Chain, state: RobotState, twist: Twist, dt: float) -> Decision:
-        """Return what whole body, residual, limits and arm make of a command."""
+        """Return the decision for a command: the whole body's plan, the residual, the limits, the joints."""
         polar = self._located(chain, state)
         l, psi, mount, closes = polar.l, polar.psi, self._mount, self._closes
         u = meant(self._angle, twist, l, psi + mount[2], state.pose.yaw, polar.theta_e)
@@ -169,12 +184,14 @@ class HandController:
         is_ = state.motion
         plan = checked(self._plan(chain, u, is_))
         split, own = plan.split, plan.joints
+        if own is not None and len(own) != len(self._still):
+            raise UnusableError(f"{len(own)} joint rates for {len(self._still)} joints")
         full, verdict = split.scale, split.verdict
         if verdict is MOVING and full < 1.0:
             verdict = Verdict.BESIDE
         v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
 
-        # The base may not do what it was asked for: what it did differently it will go on doing.
+        # The base may not do what it was asked for: assume that it keeps deviating as it last did.
         slip_v = slip_w = 0.0
         if closes:
             then = self._feedback.asked.in_force
@@ -212,13 +229,13 @@ class HandController:
             verdict = short
         if short is not MOVING or bounded != joints:
             joints = bounded
-            v_m, w_m, *_ = chain.moved(joints)  # what the joints really give
+            v_m, w_m, *_ = chain.moved(joints)  # what these joint rates really do
         self._shares = split.mu, split.sigma
         applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict)
         return Decision(state, polar, u, applied, joints, full * scale, verdict)
 
     def _rest_of(self, u: HandTwist, scale: float, w_b: float) -> Rest:
-        """Return what the arm owes beyond the plane, with the base turning at w_b: nothing, for an arm in the plane."""
+        """Return what the arm owes beyond the plane, with the base turning at w_b; all zero for an arm in the plane."""
         if not self._beyond:
             return NO_REST
         return u.u_z * scale, u.w_r * scale, u.w_t * scale, u.w_z * scale - w_b
@@ -226,7 +243,7 @@ class HandController:
     def _last_word(
         self, decision: Decision, chain: Chain, motion: Motion, dt: float
     ) -> tuple[Decision, tuple[float, ...]]:
-        """Return `decision` with the rates that the guard writes, and these."""
+        """Return `decision` with the rates that the guard writes, and those rates."""
         rates = decision.rates
         written = self.guard.write(rates, motion, dt)
         return decision if written == rates else self._written(decision, chain, written), written
@@ -234,7 +251,11 @@ class HandController:
     def _written(self, decision: Decision, chain: Chain, rates: tuple[float, ...]) -> Decision:
         """Return `decision` with other rates."""
         v_b, w_b, *dtheta = rates
-        v_m, w_m, *_ = chain.moved(tuple(dtheta))
+        try:
+            v_m, w_m, *_ = chain.moved(tuple(dtheta))
+        except Exception as error:  # it is only told: what is written stands
+            self.guard.latch(f"The arm's kinematics raised {told(error)}.")
+            v_m = w_m = 0.0
         split = _with(decision.split, v_b=v_b, w_b=w_b, v_m=v_m, w_m=w_m)
         return _with(decision, split=split, joints=tuple(dtheta))
 
@@ -244,5 +265,5 @@ class HandController:
         return Decision(state, self._located(chain, state), NO_MOTION, rest, self._still, 1.0, MOVING)
 
     def _asks(self, motion: Motion) -> bool:
-        """Say whether the law is asked: not while nothing may move, so that it cannot hold that up either."""
+        """Say whether to ask the law: not while nothing may move, so that it cannot delay that either."""
         return motion is not Motion.NONE and not self.guard.fault

@@ -1,7 +1,7 @@
 """The pilot: gate, frame, whole body, limits, residual, joints and guard, composed once, for every robot and law.
 
-Sans-I/O: what it is told goes in, what it decides comes out. The loop puts a clock, a robot and a link around it, a
-simulation a stepped clock and a scenario; and a recording of its inputs, played through a new one, gives the same bits.
+It does no I/O: inputs go in, decisions come out. The loop puts a clock, a robot and a link around it; a simulation, a
+stepped clock and a scenario. A recording of its inputs, replayed through a new pilot, gives the same bits.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from overreach.control.controller import HandController
-from overreach.control.tick import Tick
+from overreach.control.tick import Configured, Failed, Tick
 from overreach.gate.gate import PLANE, STILL, Gate, Gated
 from overreach.gate.limits import Limits
-from overreach.law.body import WholeBody
+from overreach.law.body import Planner, WholeBody
 from overreach.law.laws import Exact
 from overreach.model.model import Model
 from overreach.requests import ArmRequest, DisarmRequest, Request, ResetRequest, RestartRequest, StopRequest
@@ -20,11 +20,11 @@ from overreach.types import Command, RobotState
 from overreach.verdicts import Motion, Verdict
 
 ROW_OF = {"v_z": 2, "w_x": 3, "w_y": 4}
-"""Which row of an arm a part of the twist needs; the others are the plane's, and need none beyond it."""
+"""Part of a twist -> the row of `Arm.rows` that it needs. Parts in the plane need no row beyond the plane's."""
 
 
 def obeys(model: Model) -> frozenset[str]:
-    """Return the parts of a twist that the hand of `model` can do, and "gripper" where it has one."""
+    """Return the parts of a twist that the hand of `model` can follow, and "gripper" if it has one."""
     beyond = {name for name, row in ROW_OF.items() if row in model.arm.rows}
     return PLANE | beyond | ({"gripper"} if model.gripper else set())
 
@@ -38,7 +38,7 @@ class Pilot:
     def __init__(self, model: Model, law: WholeBody | None = None, limits: Limits | None = None) -> None:
         self.gate = Gate(limits, obeys=obeys(model))
         self.controller = self._controller(model, law or Exact())
-        self._asked: list[Request] = []
+        self._asked: list[Request | Failed | Configured] = []
 
     def _controller(self, model: Model, law: WholeBody) -> HandController:
         return HandController(model, law, self.gate.limits.ramp_s)
@@ -50,11 +50,11 @@ class Pilot:
 
     @property
     def resting(self) -> bool:
-        """Say whether the command is zero, and what is written as well."""
+        """Say whether the command is zero and the written rates are, too."""
         return self.gate.resting and not any(self.controller.guard.written)
 
     def ask(self, request: Request, now: float) -> str:
-        """Carry out a request at `now` [s]; return why not, in a sentence for the operator, or ""."""
+        """Carry out a request at `now` [s]; return "" or, in a sentence for the operator, why it was refused."""
         self._asked.append(request)
         latch = self.gate.latch
         match request:
@@ -79,26 +79,45 @@ class Pilot:
                 self.controller.restart()
         return ""
 
-    def configure(self, law: WholeBody, model: Model | None = None) -> None:
-        """Change the law, and where it is given the workspace; raises, with nothing changed, where it cannot be."""
-        self.controller.configure(law, model)
+    def configure(
+        self,
+        law: WholeBody,
+        model: Model | None = None,
+        speed_scale: float | None = None,
+        planner: Planner | None = None,
+    ) -> None:
+        """Change the law and, where they are given, workspace and speed; raises, with nothing changed, where it cannot.
+
+        planner: that of the law for the model, where it has been made before.
+        """
+        model = model or self.model
+        scale = self.gate.speed_scale if speed_scale is None else speed_scale
+        planner = planner or law.planner(model)
+        before = self.gate.speed_scale
+        self.gate.set_speed_scale(scale)
+        try:
+            self.controller.configure(law, model, planner)
+        except BaseException:
+            self.gate.set_speed_scale(before)
+            raise
+        self._asked.append(Configured(law, model, scale, planner))
 
     def fail(self, reason: str) -> None:
-        """Latch a fault for `reason`: the robot ramps to zero. The first one stays, until it is reset."""
+        """Latch a fault for `reason`: the robot ramps to zero. The first reason stays until the fault is reset."""
+        self._asked.append(Failed(reason))
         self.controller.guard.latch(reason)
         self.gate.latch.fail(reason)
 
     def tick(self, state: RobotState | None, command: Command | None, now: float, dt: float) -> Tick:
-        """Return all of the period `dt` [s] that begins at `now` [s].
+        """Decide the period `dt` [s] that begins at `now` [s], and return all of it.
 
-        state: what the robot reports, None where it reports nothing; command: the newest message that came since the
-        last tick, None where none did.
+        state: what the robot reports, or None; command: the newest message that came since the last tick, or None.
         """
         gated = self._gated(command, now, dt)
         decided = self.controller.decide(state, gated.twist, dt, now, gated.motion, gated.frame)
         if decided.fault:
             self.gate.latch.fail(decided.fault)
-        requests: tuple[Request, ...] = ()
+        requests: tuple[Request | Failed | Configured, ...] = ()
         if self._asked:
             requests, self._asked = tuple(self._asked), []
         latch = self.gate.latch
@@ -110,7 +129,7 @@ class Pilot:
         return self.gate.tick(now, dt)
 
     def ramp(self, now: float, dt: float) -> Tick:
-        """Return the next period on the way to zero: without state, command or law. For the end of every run."""
+        """Return the next tick of the ramp to zero, without state, command or law. Used at the end of every run."""
         gated = Gated(STILL, self.controller.frame, None, 1.0, Motion.NONE, Verdict.ENDING)
         latch = self.gate.latch
         decided = self.controller.ramp(dt)
@@ -118,8 +137,14 @@ class Pilot:
 
 
 def replay(pilot: Pilot, ticks: Iterable[Tick]) -> Iterator[Tick]:
-    """Yield what `pilot`, which is new, makes of the inputs of recorded ticks: the same, bit for bit."""
+    """Feed the inputs of recorded ticks to a new `pilot`; yield its ticks, which are the same bit for bit."""
     for tick in ticks:
         for request in tick.requests:
-            pilot.ask(request, tick.now)
+            match request:
+                case Failed(reason):
+                    pilot.fail(reason)
+                case Configured(law, model, speed_scale, planner):
+                    pilot.configure(law, model, speed_scale, planner)
+                case _:
+                    pilot.ask(request, tick.now)
         yield pilot.tick(tick.state, tick.command, tick.now, tick.dt)

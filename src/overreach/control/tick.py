@@ -1,26 +1,43 @@
-"""One period, whole: what went into it and what came of it. Rows, wire states and plots are views of it, by name."""
+"""One control period: all that went in and all that came out. Rows, wire states and plots are views of it."""
 
 from __future__ import annotations
 
 from overreach.gate.gate import Gated
+from overreach.law.body import Planner, WholeBody
+from overreach.model.model import Model
 from overreach.requests import Request
 from overreach.types import BaseTwist, Command, Decision, PolarState, Record, RobotState, Split
 from overreach.verdicts import Verdict, weightier
 
 
+class Failed(Record, frozen=True):
+    """From outside the pilot: something has failed, and why."""
+
+    reason: str
+
+
+class Configured(Record, frozen=True):
+    """Another law, workspace or speed came into force. planner: the law's, for the model; it was made before."""
+
+    law: WholeBody
+    model: Model
+    speed_scale: float
+    planner: Planner
+
+
 class Tick(Record, frozen=True):
     """All inputs and decisions of one tick.
 
-    In: now, dt [s]; state: what the robot reported; command: the message that came, if one did; requests: what was
-    asked since the tick before. Out: gated: what the gate let through; decided: what is written, and why; armed,
-    latched, operator: as the gate's latch was left.
+    In: now, dt [s]; state: what the robot reported; command: the message that came, if any; requests: those made since
+    the previous tick. Out: gated: what the gate let through; decided: what is written, and why; armed, latched,
+    operator: of the gate's latch, at the end of the tick.
     """
 
     now: float
     dt: float
     state: RobotState | None
     command: Command | None
-    requests: tuple[Request, ...]
+    requests: tuple[Request | Failed | Configured, ...]
     gated: Gated
     decided: Decision
     armed: bool
@@ -39,8 +56,8 @@ class Tick(Record, frozen=True):
 
     @property
     def gripper(self) -> float | None:
-        """The gripper's opening that is written, 0 to 1; None where it is to stay."""
-        return self.gated.gripper
+        """The gripper opening that is written, 0 to 1; None to leave it as it is."""
+        return None if self.decided.fault else self.gated.gripper
 
     @property
     def polar(self) -> PolarState:
@@ -54,12 +71,12 @@ class Tick(Record, frozen=True):
 
     @property
     def scale(self) -> float:
-        """The part of what was asked for that is carried out."""
+        """The part of the command that is carried out, 0 to 1."""
         return self.gated.scale * self.decided.scale
 
     @property
     def verdict(self) -> Verdict:
-        """What became of the command: of what gate and law say the weightier."""
+        """What became of the command: the weightier of the gate's verdict and the decision's."""
         return weightier(self.gated.verdict, self.decided.verdict)
 
     @property

@@ -1,4 +1,4 @@
-"""What a robot was asked for, and when: it is compared with what the robot reports of the same time. Pure."""
+"""What a robot was asked for, and when, to compare with what it reports for the same time. Pure."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Rates = tuple[float, ...]
 
 @final
 class Asked:
-    """Rates asked for, as they were in force at the time of the newest report, at once and through a first-order lag.
+    """The rates in force at the time of the newest report: as asked for, and through a first-order lag.
 
     in_force: the rates last asked for before that time; lagged: the response of dx/dt = (in_force - x)/LAG_S to them.
     """
@@ -40,7 +40,7 @@ class Asked:
             self._last = rates
 
     def move_to(self, t: float) -> None:
-        """Go on to the time `t` [s] of a newer report. What was asked for at `t` itself came after the report."""
+        """Advance to the time `t` [s] of a newer report. What was asked for at `t` itself came after that report."""
         while self._later and self._later[0][0] < t:
             at, rates = self._later.popleft()
             self._lag_to(at)

@@ -1,4 +1,4 @@
-"""What a robot reports, before anything is decided from it: finite, in range, alive, and does it follow? Pure.
+"""Checks of what a robot reports, before anything is decided from it: finite, in range, alive, following? Pure.
 
 state --> finite? in range? newer? moved when asked? as fast as asked? --> believed, or a fault with its reason
 """
@@ -18,32 +18,32 @@ BEYOND = {"rad": 0.05, "m": 0.02}
 TOO_FAST = 2.0
 """... and so is a rate that reads this many times its limit."""
 FROZEN_S = 0.1
-"""The robot's time must advance this often [s]; a position that was asked to move enough must change within it."""
+"""Within this time [s] the robot's own time must advance, and a position that was asked to move enough must change."""
 FROZEN_STEPS = 3.0
-"""How many steps of its resolution a position may owe before it is frozen."""
+"""A position counts as frozen once it owes more than this many steps of its resolution."""
 OLD_S = 1.0
-"""A report older than this [s] is of no use ..."""
+"""A report older than this [s] is a fault ..."""
 AHEAD_S = 0.1
-"""... nor one that is this far [s] ahead."""
+"""... and so is one that is farther ahead than this [s]."""
 TOLERANCE = {"m": 0.1, "rad": 0.2}
-"""A rate follows if it is this near [m/s, rad/s] to what was asked for ..."""
+"""A rate follows if it is within this [m/s, rad/s] of what was asked for ..."""
 TOLERANCE_PART = 0.3
-"""... or this near as a part of it."""
+"""... or within this fraction of it."""
 FOLLOW_S = 0.3
-"""How long [s] a rate may be farther off."""
+"""How long [s] a rate may be farther off than that."""
 SLOWEST = 1.5
-"""Rates below this many dead bands move nothing for certain."""
+"""Only a rate above this many dead bands is certain to move anything."""
 
 Position = float | complex
-"""What a channel's rate moves; complex where that is a point of the plane."""
+"""What a channel's rate moves; complex if that is a point in the plane."""
 
 
 @final
 class Feedback:
     """Checks each report of a robot against what was asked of it; see the thresholds above.
 
-    A rate is as asked for where it lies between the request at once and the request through a lag of 0.3 s, give or
-    take the tolerance. `asked` holds both, for the time of the newest report.
+    A rate follows if it lies, within the tolerance, between the request itself and the request through a lag of 0.3 s.
+    `asked` holds both, for the time of the newest report.
     """
 
     def __init__(self, channels: Sequence[Channel]) -> None:
@@ -65,7 +65,7 @@ class Feedback:
         self.reset()
 
     def reset(self) -> None:
-        """Look at everything anew, but for what was asked: a fault was reset."""
+        """Start every check afresh, but keep what was asked for: a fault was reset."""
         n = len(self._channels)
         self.asked.reset()
         self.stamp = -math.inf
@@ -77,9 +77,9 @@ class Feedback:
         self._off_since = [math.inf] * n
 
     def check(self, t: float, positions: Sequence[Position], rates: Sequence[float], now: float) -> str:
-        """Return what is wrong with a report that holds of `t` [s] and is read at `now` [s], both on one clock; or "".
+        """Return what is wrong with a report for time `t` [s], read at `now` [s] on the same clock; "" if nothing is.
 
-        positions [m, rad] and rates [m/s, rad/s]: one a channel.
+        positions [m, rad] and rates [m/s, rad/s]: one per channel.
         """
         if not math.isfinite(t):
             return "The robot's feedback has no finite time."
@@ -123,7 +123,7 @@ class Feedback:
 
     @staticmethod
     def _near(tolerance: float, at_once: float, slowly: float, rate: float) -> bool:
-        """Say whether a rate lies between two requests, give or take what is tolerated."""
+        """Say whether a rate lies between two requests, within the tolerance."""
         low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
         wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
         return low - wide <= rate <= high + wide

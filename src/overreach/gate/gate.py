@@ -1,7 +1,7 @@
 """The gate: every command passes it, every tick ends in one verdict. Pure: time comes in as `now`.
 
-Freshness is age at the receiver. Ramp: decelerate to zero, staying armed. Disarm: ramp, then only
-release and press. What the robot reports passes `feedback`, what is written to it `guard`.
+Freshness is the command's age at the receiver. Ramp: decelerate to zero and stay armed. Disarm: ramp, and then only a
+release and a new press move the robot. What it reports passes `feedback`; what is written to it passes `guard`.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ STALE_S = 0.2
 LOST_S = 1.0
 """Without a fresh command for this long [s], the robot is disarmed."""
 TOLD_S = 0.5
-"""How long a refusal is told [s], where nothing weightier is."""
+"""How long a refusal is shown [s], unless a verdict is weightier."""
 OPERATORS_KEPT = 64
 """How many operators' last messages are remembered."""
 NEVER = (0, 0)
-"""Number of the last message and the last press of an operator who has not been heard."""
+"""Numbers of the last message and the last press of an operator who has not been heard from yet."""
 
 
 STILL = Twist()
 PLANE = frozenset(("v_x", "v_y", "w_z"))
-"""The parts of a twist that every robot's hand can do."""
+"""The parts of a twist that every robot's hand can follow."""
 
 
 class Gated(Record, frozen=True):
     """What the gate lets through.
 
-    twist, in `frame`; gripper: its wanted opening, None where it is to stay; scale: by the speed limit; motion: whether
-    anything may move; verdict, with a reason where the verdict needs one.
+    twist: in `frame`; gripper: its wanted opening, None to leave it as it is; scale: applied by the speed limit;
+    motion: whether anything may move; verdict, with a reason if it needs one.
     """
 
     twist: Twist
@@ -55,10 +55,10 @@ class Gated(Record, frozen=True):
 
 @final
 class Gate:
-    """Holds what was accepted last and ramps the command. One `tick` a period.
+    """Holds the last accepted message and ramps the command. One `tick` per period.
 
-    limits: of the command; speed_scale: part of `limits.v_c`, `limits.w_c` that the full stick asks for; obeys: the
-    parts of a twist, and "gripper", that the robot has: a command for another is refused, with the reason.
+    limits: of the command; speed_scale: fraction of `limits.v_c`, `limits.w_c` that full stick asks for; obeys: the
+    parts of a twist, and "gripper", that the robot has; a command for any other is refused, with the reason.
     """
 
     def __init__(self, limits: Limits | None = None, speed_scale: float = 1.0, obeys: frozenset[str] = PLANE) -> None:
@@ -96,14 +96,14 @@ class Gate:
 
     @property
     def seen(self) -> float:
-        """What the operator had before them when they sent it: the time of a state [s], 0 before the first."""
+        """The time [s] of the state that the operator saw when sending that message, 0 before the first."""
         return self._said.seen if self._said else 0.0
 
     def arm(self, operator: int, grip: int, now: float) -> Verdict | None:
-        """Arm for `operator` at `now` [s]; return why not, or None.
+        """Arm for `operator` at `now` [s]; return the verdict that forbids it, or None.
 
-        Presses up to `grip` do not count: a dead-man that is already held moves nothing. Whoever armed before
-        keeps the robot until it rests and he has been silent for LOST_S.
+        Presses up to `grip` do not count: a dead-man that is already held moves nothing. The operator
+        who armed before keeps the robot until it rests and they have been silent for LOST_S.
         """
         latch = self.latch
         if latch.fault:
@@ -121,7 +121,7 @@ class Gate:
     def accept(self, said: Command, now: float) -> Verdict | None:
         """Take a message that arrived at `now` [s]; return why it is refused, or None.
 
-        A command for a motion that the robot does not have counts as one for no motion.
+        A command for a motion that the robot lacks counts as a command for rest.
         """
         latch = self.latch
         seq, grip = self._seen.get(said.operator, NEVER)
@@ -141,7 +141,7 @@ class Gate:
         if refusal:
             return self._refuse(refusal, now)
         if latch.armed and self._was_lost(now):
-            # Lost while held: neither that press counts nor one that was made while nothing came through.
+            # Lost while held: neither that press counts, nor one made during the silence.
             latch.spend(said.grip)
         self._said = said
         self._fresh_at = now
@@ -156,13 +156,16 @@ class Gate:
         return refusal
 
     def _lacking(self, said: Command) -> list[str]:
-        """Return what is asked for and not there."""
+        """Return what is asked for but the robot lacks."""
         twist = said.twist
         if twist == self._twist and said.gripper is None:  # as it is going already
             return []
         asked = [name for name in self._lacks if getattr(twist, name) != 0.0]
-        if said.gripper is not None and not self._grips:
-            asked.append("gripper")
+        if said.gripper is not None:
+            if not self._grips:
+                asked.append("gripper")
+            elif not 0.0 <= said.gripper <= 1.0:
+                asked.append("gripper's opening but 0 to 1")
         return asked
 
     def _was_lost(self, now: float) -> bool:

@@ -1,4 +1,4 @@
-"""The last word before the motors. Over n named channels, base rates first; it knows no robot and no law. Pure.
+"""The last word before the motors, over n named channels, base rates first. It knows no robot and no law. Pure.
 
 what is wanted --> finite? bounded? may anything move? --> what is written
 """
@@ -15,17 +15,17 @@ from overreach.types import Channel
 from overreach.verdicts import Motion
 
 SLACK = 1e-6
-"""Excess over a bound, in parts of the change in one period, that is taken for rounding and taken away."""
+"""An excess over a bound that counts as rounding and is cut off, as a fraction of the change in one period."""
 
 
 @final
 class Guard:
     """Whatever is wanted: what is written is finite, keeps every bound, and is zero when nothing may move.
 
-    channels: |rate| <= rate_max, and |change| <= change_max dt from one write to the next. What is wanted beyond that
-    is a fault: it is latched with its reason, and the whole robot ramps to zero along its own direction from what was
-    last written. ramp_s [s]: how long the command's own ramp takes; stop_s [s]: that, or the longest ramp of a channel
-    where it is longer. From the moment that nobody moves the hand, the robot is at zero within stop_s and a period.
+    channels: |rate| <= rate_max, and |change| <= change_max dt from one write to the next. Wanting more is a
+    fault: it is latched with its reason, and the whole robot ramps to zero along its own direction from what was last
+    written. ramp_s [s]: duration of the command's own ramp; stop_s [s]: the greater of ramp_s and the longest ramp of a
+    channel. From the moment that nobody moves the hand, the robot is at zero within stop_s plus one period.
     """
 
     def __init__(self, channels: Sequence[Channel], ramp_s: float) -> None:
@@ -36,13 +36,13 @@ class Guard:
         self._dt = 0.0
         self._steps: tuple[float, ...] = ()
         self.fault = ""
-        """Why the robot is to stand still until `reset`; empty where it is not."""
+        """Why the robot must stand still until `reset`; empty if there is no fault."""
         self.restart()
 
     def restart(self) -> None:
         """Begin from standstill. A fault stays."""
         self.written = (0.0,) * len(self.channels)
-        self._let_go_s = math.inf  # for as long as there has been a robot
+        self._let_go_s = math.inf  # nobody has moved the hand yet
 
     def latch(self, reason: str) -> None:
         """Latch a fault for `reason`; the first one stays."""
@@ -53,7 +53,7 @@ class Guard:
         self.fault = ""
 
     def write(self, wanted: Sequence[float], motion: Motion, dt: float) -> tuple[float, ...]:
-        """Return what to write for the period `dt` [s], for the rates `wanted` and what the gate says of motion."""
+        """Return the rates to write for the period `dt` [s], given the rates `wanted` and the gate's `motion`."""
         self._let_go_s = 0.0 if motion is Motion.ALLOWED else self._let_go_s + dt
         if motion is Motion.NONE:
             if not all(map(math.isfinite, wanted)):
@@ -67,7 +67,7 @@ class Guard:
         return self.ramp(dt)
 
     def ramp(self, dt: float) -> tuple[float, ...]:
-        """Return the next rates on the way from what was last written to zero, all channels by the same fraction."""
+        """Return the next rates of the ramp from what was last written to zero: all channels shrink by one fraction."""
         periods = max(1.0, self._ramp_s() / dt)
         self.written = tuple(rate - rate / periods for rate in self.written)
         return self.written
@@ -78,7 +78,7 @@ class Guard:
         return longest
 
     def _bounded(self, wanted: Sequence[float], dt: float) -> tuple[float, ...] | None:
-        """Return `wanted`, less what is rounding; None, with the fault latched, where it is not bounded."""
+        """Return `wanted` less any rounding excess; None, with a fault latched, if it passes a bound."""
         if dt != self._dt:
             self._dt, self._steps = dt, tuple([change * dt for change in self._changes])
         if within(wanted, self.written, self._mosts, self._steps):

@@ -17,10 +17,10 @@ SLACK = 1e-9
 
 
 class Limits(Record, frozen=True):
-    """Limits on the operator's command, and on its rates.
+    """Limits on the operator's command and on its rates of change.
 
-    v_c [m/s]: of the hand's speed along the ground; v_z [m/s]: up and down; w_c [rad/s]: of its turning, about any
-    axis; dv_c, dv_z [m/s^2], dw_c [rad/s^2]: of their changes.
+    v_c [m/s]: on the hand's speed along the ground; v_z [m/s]: on its speed up and down; w_c [rad/s]: on its turning
+    rate about any axis; dv_c, dv_z [m/s^2], dw_c [rad/s^2]: on their rates of change.
     """
 
     v_c: float = 0.4
@@ -43,14 +43,14 @@ class Limits(Record, frozen=True):
 
 
 def _worst(twist: Twist, along: float, up: float, turning: float) -> float:
-    """Return how many times its bounds a twist is, in the part that is farthest beyond."""
+    """Return the greatest ratio of a part of the twist to its bound."""
     v_x, v_y, v_z, w_x, w_y, w_z = astuple(twist)
     worst: float = max(hypot(v_x, v_y) / along, abs(v_z) / up, hypot(w_x, w_y, w_z) / turning)
     return worst
 
 
 def limit_speed(twist: Twist, limits: Limits) -> tuple[Twist, float]:
-    """Return (twist, scale): the command shrunk, all parts alike, until none passes its limit."""
+    """Return (twist, scale): the command with all parts scaled alike, so that none passes its limit."""
     worst = _worst(twist, limits.v_c, limits.v_z, limits.w_c)
     if worst <= 1.0 + SLACK:
         return twist, 1.0
@@ -58,7 +58,7 @@ def limit_speed(twist: Twist, limits: Limits) -> tuple[Twist, float]:
 
 
 def slew(now: Twist, goal: Twist, limits: Limits, dt: float) -> tuple[Twist, bool]:
-    """Return (twist, limited): the command moved from `now` towards `goal`, straight, for `dt` [s].
+    """Return (twist, limited): the command moved straight from `now` towards `goal` for `dt` [s].
 
     All parts take the same fraction of the way, so that a ramp to zero keeps the direction.
     """
@@ -82,8 +82,8 @@ def feasible_scale(
 
     At scale s the rate of channel i is s wanted_i + apart_i, where `apart` (none by default) is what a channel does
     whatever the command is. It must satisfy |rate_i| <= fastest_i and |rate_i - happening_i| <= change_i (acceleration
-    times the period). Where no scale keeps all, the one that is least far out is returned that keeps the speeds; the
-    caller then clamps each channel (`clamp_change`). All must be finite.
+    times the period). If no scale keeps every limit, return the one that keeps the speed limits and is least far out
+    of the others; the caller then clamps each channel (`clamp_change`). All arguments must be finite.
     """
     scale = 1.0
     verdict = Verdict.MOVING
@@ -108,7 +108,7 @@ def feasible_scale(
 
 
 def within(rates: Sequence[float], was: Sequence[float], most: Sequence[float], change: Sequence[float]) -> bool:
-    """Say whether every rate keeps its limit, and its change since `was` as well. False for nan."""
+    """Say whether every rate keeps its limit and so does its change since `was`. False for NaN."""
     for rate, before, top, step in zip(rates, was, most, change, strict=True):
         if not (-top <= rate <= top and before - step <= rate <= before + step):
             return False

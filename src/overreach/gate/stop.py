@@ -4,7 +4,7 @@
     any --stop--> STOPPED --reset--> DISARMED
     any --fail--> FAULT --reset--> DISARMED
 
-A press of the dead-man is told apart by its number (`grip`, counted by the operator's side), not by an
+A press of the dead-man is identified by its number (`grip`, counted by the operator's side), not by an
 edge, because on a latest-wins link the release between two presses may never arrive.
 """
 
@@ -20,7 +20,7 @@ class StopLatch:
     def __init__(self) -> None:
         self.stopped = False
         self.fault = ""
-        """Why the guard has stopped the robot; empty where it has not."""
+        """Why the guard has stopped the robot; empty if it has not."""
         self.armed = False
         self.operator = 0
         """Session of the operator who armed; 0 while there is none."""
@@ -39,7 +39,7 @@ class StopLatch:
 
     @property
     def latched(self) -> bool:
-        """Say whether only a reset leads on."""
+        """Say whether it is stopped or faulted: only a reset leads out of either."""
         return self.stopped or bool(self.fault)
 
     def reset(self) -> None:
@@ -60,5 +60,5 @@ class StopLatch:
         self.armed = False
 
     def spend(self, grip: int) -> None:
-        """From now on only a press later than `grip` moves the robot."""
+        """Let only a press later than `grip` move the robot from now on."""
         self.spent_grip = max(self.spent_grip, grip)

@@ -18,16 +18,16 @@ Mount3 = tuple[float, float, float]
 Shares = tuple[float, float, float, float, float, float, float]
 
 BASE_GAIN = 5.0
-"""The base drives at most this many times as fast as the hand; nearer to c = 0 all is scaled."""
+"""The base drives at most this many times as fast as the hand; nearer to c = 0 the whole command is scaled."""
 
 BASE_GAIN_2 = BASE_GAIN * BASE_GAIN
 
 LEVER_MIN = 0.1
-"""The lever k_t by which the base turns the hand is taken as at least this part of l."""
+"""The lever k_t, with which a base rotation moves the hand, is taken as at least this fraction of l."""
 LEVER_MIN_2 = LEVER_MIN * LEVER_MIN
 
 HUGE = 1e300
-"""(|u|/u_r)^2 above which the base has as good as nothing to drive, and nothing to line up with."""
+"""(|u|/u_r)^2 above which the base has practically nothing to drive, and nothing to line up with."""
 
 
 def scaled_drive(drive: float, lined: float, speed: float) -> tuple[float, float]:
@@ -52,7 +52,7 @@ def paper(
     """Share as the paper does, with v_c = u_r and w_c = u_t / l.
 
     v_bm = mu v_c, v_m = (1 - mu) v_c, v_b = v_bm / cos psi, w_b = sigma w_c, w_m = (1 - sigma) w_c.
-    In true kinematics the EE leaves the command by mu |v_c tan psi|. Source: Kwon et al. 2026, (12) to (16).
+    In true kinematics the EE deviates from the command by mu |v_c tan psi|. Source: Kwon et al. 2026, (12) to (16).
     """
     l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
     w_c = u_t / l
@@ -130,7 +130,7 @@ def exact(
                 w_l = v_b * (2.0 * g * eta * sqrt(length_2) - (k_t * t + k_r) / sqrt(one)) / length_2
 
     # sigma depends on the sign of w_des, the bearing rate that is left to the arm if the base only drives and
-    # lines up. That sign is the same for every sigma wherever driving helps at all: nothing is searched.
+    # lines up. That sign is the same for every sigma wherever driving helps at all, so no search is needed.
     w_des = u_t * scale - k_t * w_l + v_b * sn
     if k_r != 0.0:
         w_des -= k_r * sn / c * w_l

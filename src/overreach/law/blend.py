@@ -41,7 +41,7 @@ def rise_smoothstep(e: float, q: float) -> float:
 
 
 class Blend(Parameters, frozen=True):
-    """Base of the blends: a frozen record of its widths, which gives `rise` and its width parameters.
+    """Base of the blends: a frozen record of widths that provides `rise` and its width parameters.
 
     k_l, k_psi: what `rise` takes for length and bearing; width_l [m], width_psi [rad]: the transition widths Q, 1 % to
     99 % for tanh, the whole support for smoothstep, 0 for step.
@@ -149,12 +149,12 @@ class Step(Blend, frozen=True):
 
     @property
     def k_l(self) -> float:
-        """Not looked at."""
+        """Unused by `rise_step`."""
         return 1.0
 
     @property
     def k_psi(self) -> float:
-        """Not looked at."""
+        """Unused by `rise_step`."""
         return 1.0
 
     @property

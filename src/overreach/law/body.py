@@ -1,4 +1,4 @@
-"""Who moves the hand: the Protocol of everything that plans for the whole body, sharing laws and their rivals alike."""
+"""Who moves the hand: the base class of all that plan for the whole body, sharing laws and their rivals alike."""
 
 from __future__ import annotations
 
@@ -14,51 +14,52 @@ from overreach.types import FLOATS, Frame, HandTwist, Plan, Split, Twist
 from overreach.verdicts import Verdict
 
 Planner = Callable[[Chain, HandTwist, Twist], Plan]
-"""(arm at its joints, what is commanded, the base's motion as it is) -> plan. Pure; raises nothing."""
+"""(arm at its joints, commanded hand twist, measured base twist) -> plan. Pure; raises nothing."""
 
 
 class WholeBody(Parameters, frozen=True):
-    """Plans the rates of base and arm for one EE velocity: frozen parameters, which meet a robot in `planner`."""
+    """Plans the rates of base and arm for one EE velocity: frozen parameters, bound to a robot by `planner`."""
 
     frame: ClassVar[Frame] = Frame.HAND
     """The command frame that suits it, used unless another is asked for."""
     closes_residual: ClassVar[bool] = True
-    """Whether the arm is to make up for what the base does otherwise than asked (lag, slip, limits)."""
+    """Whether the arm is to make up for how the base deviates from what it was asked for (lag, slip, limits)."""
 
     slow_to_load: ClassVar[bool] = False
-    """Whether the first of its kind brings libraries along for a while: such a law is first chosen at rest."""
+    """Whether its first use spends a while importing libraries: such a law can first be chosen only at rest."""
 
     def planner(self, model: Model) -> Planner:
-        """Return what plans for `model`."""
+        """Return the planner for `model`."""
         raise NotImplementedError
 
 
 class UnusableError(ValueError):
-    """A plan that cannot be used; says which part is what."""
+    """A plan that cannot be used; the text gives the part and its value."""
 
 
-ANSWERS = (Verdict.MOVING, Verdict.NO_SOLUTION)
-"""What a law may say of its answer; the other verdicts are not a law's to give."""
+MOVING = Verdict.MOVING
+"""This or NO_SOLUTION is what a law may say of its answer; the other verdicts are not a law's to give."""
 NO_SOLUTION = Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, Verdict.NO_SOLUTION)
-"""What is given where a solver failed: zero, and why."""
+"""The split to give when a solver fails: zero, and why."""
 
 
 def checked(plan: Plan) -> Plan:
     """Return a plan as plain floats.
 
-    Raises UnusableError unless every number is finite, the scale in [0, 1] and the verdict one that a law may give.
+    Raises UnusableError unless every number is finite, the scale is in [0, 1] and a law may give the verdict.
     """
     split = plan.split
-    numbers = (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale, *(plan.joints or ()))
+    own = () if plan.joints is None else tuple(plan.joints)
+    numbers = (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale, *own)
     if not (math.isfinite(sum(map(abs, numbers))) and 0.0 <= split.scale <= 1.0):
         for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
             value = getattr(split, name)
             if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
                 raise UnusableError(f"{name} = {value}")
         raise UnusableError("rates too great to use")
-    if split.verdict not in ANSWERS:
+    if split.verdict is not MOVING and split.verdict is not Verdict.NO_SOLUTION:  # a text that is equal is not it
         raise UnusableError(f"the verdict {str(split.verdict)[:LONGEST_NAME]!r}")
-    if set(map(type, numbers)) == FLOATS:
+    if set(map(type, numbers)) == FLOATS and (plan.joints is None or own is plan.joints):
         return plan
     mu, sigma, v_b, w_b, v_m, w_m, scale, *joints = map(float, numbers)
     made = Split(mu, sigma, v_b, w_b, v_m, w_m, scale, split.verdict)

@@ -1,6 +1,6 @@
-"""What the operator's twist means: command frames, and from each of them to polar axes at the hand.
+"""What the operator's twist means: the command frames, and the conversion of each to polar axes at the hand.
 
-A frame says along which axes the twist's x and y are meant: its x axis lies at an angle from r, the direction outward
+A frame sets the axes along which the twist's x and y lie: its x axis is at an angle from r, the direction outward
 from the shoulder. w_z sweeps the hand about the shoulder, in every frame:
     u = R(angle) v + w_z z x (p_e - p_shoulder)
 """
@@ -48,7 +48,7 @@ FRAMES: dict[Frame, CommandFrame] = {
 
 
 def meant(angle: CommandFrame, twist: Twist, l: float, psi_d: float, theta_b: float, theta_e: float) -> HandTwist:
-    """Return what a twist, in the frame of that angle, means for the hand at (l [m], psi_d [rad])."""
+    """Return, in polar axes, a twist given in the frame of `angle`, for the hand at (l [m], psi_d [rad])."""
     turn = angle(psi_d, theta_b, theta_e)
     c, s = cos(turn), sin(turn)
     v_x, v_y, w_x, w_y = twist.v_x, twist.v_y, twist.w_x, twist.w_y
@@ -65,11 +65,11 @@ def heading_rate(frame: Frame, w_z: float) -> float | None:
 
 
 def axes(frame: Frame) -> tuple[str, str]:
-    """Return the components of the twist that a stick of two axes, forward and leftward, means in `frame`."""
+    """Return the twist components that a two-axis stick, forward and leftward, commands in `frame`."""
     return ("v_x", "w_z") if frame in (Frame.HAND, Frame.POLAR) else ("v_x", "v_y")
 
 
 def of_two(frame: Frame, forward: float, left: float) -> Twist:
-    """Return the twist of a stick of two axes, in m/s and m/s or rad/s; see `axes`."""
+    """Return the twist of a two-axis stick: forward in m/s, left in m/s or rad/s; see `axes`."""
     _, second = axes(frame)
     return Twist(forward, w_z=left) if second == "w_z" else Twist(forward, left)

@@ -18,9 +18,9 @@ number is finite for finite input with l > 0."""
 
 
 class Law(WholeBody, frozen=True):
-    """Shares one planar EE velocity between base and arm: frozen parameters, which meet a robot in `bind`.
+    """Shares one planar EE velocity between base and arm: frozen parameters, bound to a robot by `bind`.
 
-    One of your own names itself, its frame and whether it closes the residual, and has a `bind`.
+    A law of your own sets `name`, `frame` and `closes_residual`, and defines `bind`.
     """
 
     def bind(self, model: Model) -> Share:
@@ -28,7 +28,7 @@ class Law(WholeBody, frozen=True):
         raise NotImplementedError
 
     def planner(self, model: Model) -> Planner:
-        """Return a plan in which the arm finds its own rates; for a base that states a lag with shares taken ahead."""
+        """Return a planner that leaves the joint rates to the arm; if the base states a lag, shares are taken ahead."""
         share = self.bind(model)
         lag, mount = model.base.lag, model.mount.three
 
@@ -48,7 +48,7 @@ def constants(model: Model, blend: Blend) -> tuple[authority.Limits6, authority.
 
 
 def bound(shares: Callable[..., authority.Shares], model: Model, blend: Blend) -> Share:
-    """Return one of the functions in `authority` with all that is known beforehand."""
+    """Return one of the functions in `authority` with its blend, limits and mount filled in."""
     rise = blend.rise
     limits, mount = constants(model, blend)
 

@@ -1,4 +1,4 @@
-"""Where the hand will be, seen from a base that follows late: a pure function of floats."""
+"""Where the hand will be once a lagging base has caught up: a pure function of floats."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import cos, sin
 from overreach.law.authority import Mount3, arm_residual
 
 L_LEAST = 1e-6
-"""A hand is never asked for nearer to the shoulder than this [m]."""
+"""A law is never asked about a hand nearer to the shoulder than this [m]."""
 
 
 def lead(
@@ -20,10 +20,10 @@ def lead(
     lag: float,
     mount: Mount3,
 ) -> tuple[float, float, float, float]:
-    """Return (l, psi, u_r, u_t) as they are to be shown to a law whose base follows with the time constant `lag` [s].
+    """Return the (l, psi, u_r, u_t) to give to a law whose base follows with the time constant `lag` [s].
 
-    (v_b, w_b) is the base twist that is happening, (v_m, w_m) what the arm must do against it. A base that lags by T
-    will have left T v_m and T w_m more to the arm when it has caught up:
+    (v_b, w_b) is the present base twist, (v_m, w_m) what the arm must add to it. By the time a base that lags by T has
+    caught up, it will have left T v_m and T w_m more to the arm:
         l + T v_m,   psi + T w_m,   and the same velocity, seen along that bearing.
     Pushed straight on, d/dt (l + T v_m) = (1 - mu) u_r: shares taken there keep l in the band that a base without lag
     keeps it in. Source: this project (docs/why.md).

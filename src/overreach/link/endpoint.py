@@ -33,7 +33,7 @@ def free_port(host: str = "127.0.0.1") -> int:
 def open_session(listen: str | None = None, connect: str | None = None) -> zenoh.Session:
     """Open a peer that listens at or connects to one endpoint and looks for no other.
 
-    Raises LinkError where the endpoint cannot be listened at. A connection is retried for ever.
+    Raises LinkError if it cannot listen at the endpoint. A connection is retried forever.
     """
     config = zenoh.Config()
     settings: dict[str, object] = {

@@ -22,10 +22,10 @@ from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartR
 from overreach.types import BaseTwist, Command, Frame, Pose, Twist
 
 PROTOCOL = 2
-"""Raised when a message changes its meaning; both halves must have the same (a test holds that)."""
+"""Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
 
 LONGEST = 4096
-"""Longest message [bytes] that the robot side looks at."""
+"""Longest message [bytes] that the robot side decodes."""
 
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
 """What a robot may be called in a network."""
@@ -33,19 +33,19 @@ ANY = "*"
 
 
 def key(robot: str, what: str) -> str:
-    """Return the key of command, request, hello or state of the robot of that name."""
+    """Return the Zenoh key of `what` (command, request, hello or state) for the robot called `robot`."""
     return f"overreach/{robot}/{what}"
 
 
 def check_name(name: str) -> str:
-    """Return a robot's name in the network; raises SetupError where it cannot be one."""
+    """Return a robot's name in the network; raises SetupError if it is not a valid one."""
     if not NAME.fullmatch(name):
         raise SetupError(f"a robot's name must be 1 to 40 of A-Z a-z 0-9 _ -, got {name!r}")
     return name
 
 
 class Choice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plug by its name, with those of its parameters that are not as usual."""
+    """A plug by its name, with the parameters that are set; the others keep their defaults."""
 
     name: str
     parameters: dict[str, float | str] = {}
@@ -54,8 +54,8 @@ class Choice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What an operator may change while the robot runs.
 
-    law: a law or whole body; blend: for the laws that have one to be chosen; frame: in which the pages command;
-    workspace: where the arm works alone; speed_scale: what the full stick asks for, of the limits.
+    law: a law or whole body; blend: for the laws that take one; frame: in which the pages command; workspace: where
+    the arm works alone; speed_scale: the fraction of the limits that full stick asks for.
     """
 
     workspace: Workspace
@@ -66,7 +66,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Plug(msgspec.Struct, frozen=True):
-    """What there is to choose: a summary, the parameters, and whether it has a blend to be chosen."""
+    """A law or blend to choose: its summary, its parameters, and whether it takes a blend."""
 
     summary: str
     parameters: tuple[Parameter, ...]
@@ -74,7 +74,7 @@ class Plug(msgspec.Struct, frozen=True):
 
 
 class Scene(msgspec.Struct, frozen=True):
-    """What is drawn about the base: closed lines through (x, y) [m] in the base frame.
+    """What is drawn around the base: closed lines through (x, y) [m] in the base frame.
 
     footprint: length and width of the base [m]; workspace: where the arm works alone; bands: where base and arm blend.
     """
@@ -104,19 +104,19 @@ class Refused(msgspec.Struct, frozen=True, tag="refused"):
 
 
 class Hello(msgspec.Struct, frozen=True):
-    """The operator side's first word."""
+    """The operator side's first message."""
 
     protocol: int
     version: str
 
 
 class Welcome(msgspec.Struct, frozen=True, tag="welcome"):
-    """The robot side's answer: what it is.
+    """The robot side's answer to a hello: what it is.
 
     name: in the network; model: which robot; rate [Hz]; limits: of the command, where a stick is at its end; reach: of
-    the arm [m]; obeys: the parts of a twist, and "gripper", that it does; axes: by frame, what a stick of two axes,
-    forward and leftward, means; stop_time [s]: the longest from a lost signal to standstill; laws, blends: what there
-    is to choose from, by name.
+    the arm [m]; obeys: the parts of a twist, and "gripper", that it follows; axes: by frame, what a two-axis stick,
+    forward and leftward, commands; stop_time [s]: the longest time from a lost signal to standstill; laws, blends: what
+    can be chosen, by name.
     """
 
     protocol: int
@@ -144,13 +144,14 @@ Answer = Accepted | Refused | Welcome
 class State(msgspec.Struct, frozen=True, gc=False):
     """What the robot side tells, at least 50 times a second.
 
-    t [s] of the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq of
-    the last accepted command of theirs, and the `t` of the state that they had before them when they sent it. verdict,
-    word, sentence, look and scale: as in `verdicts`; stopped: whether only a reset leads on. twist, in `frame`, and
-    gripper: the command that got through the gate. polar, mu, sigma, v_m, w_m and base: as in `types`; pose: of the
-    base; joints [rad, m]; hand: its place in the world [m], velocity: its true velocity there [m/s]; links: the arm as
-    a line through points in the world [m]. State at t, rates from t on. late_p50, late_p99, late_max [us]: the loop's
-    lateness over the last second. revision: counts the changes of the settings.
+    t [s]: on the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq of
+    their last accepted command, and the `t` of the state that they saw when sending it. verdict, word, sentence, look:
+    as in `verdicts`; scale: the part of the command that is carried out; stopped: whether it is stopped or faulted, so
+    that only a reset leads out. twist, in `frame`, and gripper: the command that the gate let through. l, psi, theta_e,
+    mu, sigma, v_m, w_m and base: as in `types`; pose: of the base; joints [rad, m]; hand: its position in the world
+    [m]; velocity: its true velocity in the world [m/s]; links: the arm as a line through points in the world [m]. State
+    at t, rates from t on. late_p50, late_p99, late_max [us]: the loop's lateness over the last second. revision: counts
+    the changes of the settings.
     """
 
     t: float

@@ -30,7 +30,7 @@ from overreach.link.messages import (
 from overreach.types import Command
 
 ANSWER_S = 1.0
-"""How long an answer is waited for [s]."""
+"""How long to wait for an answer [s]."""
 LOADING_S = 10.0
 """How long new settings may take [s]: a law that is used for the first time has its libraries loaded first."""
 AGAIN_S = 0.02
@@ -40,7 +40,7 @@ AGAIN_S = 0.02
 class OperatorEnd:
     """A session to one robot side. Callbacks come on zenoh's thread.
 
-    robot: its name in the network; "" where there is but one: `welcome` finds it.
+    robot: its name in the network; "" if there is only one, which `welcome` finds.
     """
 
     def __init__(self, connect: str, robot: str = "") -> None:
@@ -59,7 +59,7 @@ class OperatorEnd:
         self._states = self._session.declare_subscriber(key(self.robot, "state"), receive)
 
     def send(self, command: Command) -> None:
-        """Send a command; dropped where the network is full (the next one says the same and more)."""
+        """Send a command; it is dropped if the network is congested (the next one replaces it)."""
         if self._commands is None:
             self._commands = self._session.declare_publisher(
                 key(self.robot, "command"),
@@ -86,7 +86,7 @@ class OperatorEnd:
         }
 
     def request(self, request: AnyRequest) -> Accepted | Refused:
-        """Ask the robot side for something and return its answer. Blocks for at most ANSWER_S, settings LOADING_S."""
+        """Ask the robot side for something; return its answer. Blocks for at most ANSWER_S, settings for LOADING_S."""
         answers = self._ask("request", request, LOADING_S if isinstance(request, ConfigureRequest) else ANSWER_S)
         answer = answers.get(self.robot)
         if isinstance(answer, Accepted | Refused):
@@ -96,7 +96,7 @@ class OperatorEnd:
     def welcome(self, wait_s: float, ended: Callable[[], bool] = lambda: False) -> Welcome:
         """Say hello until the robot side answers.
 
-        Raises LinkError after `wait_s` [s], where `ended()` says that it never will, or where it does not fit.
+        Raises LinkError after `wait_s` [s], if `ended()` says that it never will, or if the two sides do not fit.
         """
         clock = MonotonicClock()
         until = clock.now() + wait_s

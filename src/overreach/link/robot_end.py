@@ -1,4 +1,4 @@
-"""The robot side's end of the link. Polled by the loop: no thread of Python's runs beside it.
+"""The robot side's end of the link. Polled by the loop: no Python thread runs beside it.
 
 Zenoh's ring channel of one keeps the newest command in Rust, so that latest wins costs the loop nothing.
 """
@@ -19,7 +19,6 @@ from overreach.link.messages import (
     AnyRequest,
     Hello,
     Refused,
-    State,
     decode_command,
     decode_hello,
     decode_request,
@@ -31,7 +30,7 @@ from overreach.types import Command
 T = TypeVar("T")
 
 NOT_UNDERSTOOD = (msgspec.DecodeError, UnicodeDecodeError, RecursionError)
-"""What decoding may raise, whatever bytes came."""
+"""What decoding may raise, for any bytes."""
 
 REQUESTS_HELD = 64
 """Requests that wait for the next tick; more than this at once are not waited for."""
@@ -70,13 +69,13 @@ class RobotEnd:
         """Yield each waiting request with the function that answers it."""
         yield from self._drain(self._requests, "request", decode_request)
 
-    def hellos(self) -> Iterator[tuple[Hello, Callable[[Answer], None]]]:
-        """Yield each waiting hello with the function that answers it."""
+    def hellos(self) -> Iterator[tuple[Hello, Callable[[Answer | msgspec.Raw], None]]]:
+        """Yield each waiting hello with the function that answers it, with a message or one that is encoded."""
         yield from self._drain(self._hellos, "hello", decode_hello)
 
     def _drain(
         self, queryable: zenoh.Queryable[Any], what: str, decode: Callable[[bytes], T]
-    ) -> Iterator[tuple[T, Callable[[Answer], None]]]:
+    ) -> Iterator[tuple[T, Callable[[Answer | msgspec.Raw], None]]]:
         while (query := queryable.try_recv()) is not None:
             answer = _answer_to(query, key(self.name, what))
             try:
@@ -87,9 +86,9 @@ class RobotEnd:
                 continue
             yield message, answer
 
-    def publish(self, state: State) -> None:
-        """Send `state`; dropped where the network is full."""
-        self._states.put(encode(state))
+    def publish(self, state: bytes) -> None:
+        """Send an encoded state; dropped where the network is full."""
+        self._states.put(state)
 
     def close(self) -> None:
         """Close the session; without this the process could hang at its end."""
@@ -102,8 +101,8 @@ def _short(payload: zenoh.ZBytes) -> bytes:
     return payload.to_bytes()
 
 
-def _answer_to(query: zenoh.Query, own: str) -> Callable[[Answer], None]:
-    def answer(message: Answer) -> None:
+def _answer_to(query: zenoh.Query, own: str) -> Callable[[Answer | msgspec.Raw], None]:
+    def answer(message: Answer | msgspec.Raw) -> None:
         query.reply(own, encode(message))  # under its own key: a hello may be for any robot
         query.drop()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
 

@@ -13,7 +13,7 @@ LONGEST_LAG_S = 1.0
 class Base(Record, frozen=True):
     """A base on wheels: v_max [m/s], w_max [rad/s], dv_max [m/s^2], dw_max [rad/s^2]; footprint: length, width [m].
 
-    lag: time constant with which the base follows what it is asked for, 0 where it follows at once or it is not known.
+    lag: time constant [s] with which the base follows a request; 0 if it follows at once or the lag is not known.
     """
 
     v_max: float

@@ -1,11 +1,9 @@
-"""What is known of a robot before it moves, whatever it is made of: the Protocol that law, pilot and robots meet."""
+"""What is known of any robot before it moves: the Protocol that laws, the pilot and robots use."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol, cast
-
-import msgspec
+from typing import Protocol
 
 from overreach.arm.chain import Arm
 from overreach.arm.mount import Mount
@@ -16,7 +14,7 @@ from overreach.types import Channel
 
 
 class Model(Protocol):
-    """A base with an arm on it. Frozen; the one place where its geometry is told."""
+    """A base with an arm on it. Frozen; the only place that holds its geometry."""
 
     @property
     def name(self) -> str:
@@ -45,7 +43,7 @@ class Model(Protocol):
 
     @property
     def workspace(self) -> Workspace:
-        """Where the arm is to work alone."""
+        """Where the arm works alone."""
         ...
 
     @property
@@ -58,20 +56,18 @@ class Model(Protocol):
         """Whether its hand opens and closes."""
         ...
 
+    def placed(self, mount: Mount, workspace: Workspace) -> Model:
+        """Return the same with its arm at another place, and another workspace; raises WorkspaceError."""
+        ...
+
 
 def channels(model: Model) -> tuple[Channel, ...]:
-    """Return the rates that are written, in order: the base's, then one a joint."""
+    """Return the channels that are written, in order: the base's, then one per joint."""
     return (*model.base.channels, *model.arm.channels)
 
 
-def placed(model: Model, mount: Mount, workspace: Workspace) -> Model:
-    """Return `model` with its arm at another place, and another workspace."""
-    changed: Any = msgspec.structs.replace(model, mount=mount, workspace=workspace)  # type: ignore[type-var]
-    return cast(Model, changed)
-
-
 def check_workspace(model: Model, workspace: Workspace) -> None:
-    """Raise WorkspaceError unless the arm of `model` reaches the whole of `workspace`, beside the turning centre."""
+    """Raise WorkspaceError unless the arm of `model` reaches all of `workspace`, clear of the turning centre."""
     least, most = model.arm.reach
     if workspace.l_min < least or workspace.l_max > most:
         raise WorkspaceError(
@@ -82,7 +78,7 @@ def check_workspace(model: Model, workspace: Workspace) -> None:
 
 
 def check_reach(model: Model, l: float) -> None:
-    """Raise WorkspaceError unless the hand can be l [m] from the shoulder, short of its singularities."""
+    """Raise WorkspaceError unless the hand can be l [m] from the shoulder, strictly within the arm's reach."""
     least, most = model.arm.reach
     if not least < l < most:
         raise WorkspaceError(f"the arm cannot reach l = {l:g} m: valid are {least:g} < l < {most:g} m")

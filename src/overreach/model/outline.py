@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, cos, sin
+from math import ceil, cos, pi, sin
 
 from overreach.arm.mount import Mount
 from overreach.model.model import Model
@@ -15,10 +15,13 @@ PER_POINT = 0.06
 
 
 def sector(mount: Mount, r0: float, r1: float, a0: float, a1: float) -> Outline:
-    """Return the part of a ring about the shoulder between radii [m] and bearings from the arm's x axis [rad]."""
-    n = max(1, ceil(abs(a1 - a0) / PER_POINT))
+    """Return the part of a ring about the shoulder between radii [m] and bearings from the arm's x axis [rad].
+
+    Bearings count up to half a turn either way: the line has at most 2 pi / PER_POINT points and a few.
+    """
+    a0, a1, r0 = max(-pi, a0), min(pi, a1), max(0.0, r0)
+    n = max(1, ceil((a1 - a0) / PER_POINT))
     angles = [mount.yaw + a0 + (a1 - a0) * k / n for k in range(n + 1)]
-    r0 = max(0.0, r0)
     outer = [(mount.s_x + r1 * cos(angle), mount.s_y + r1 * sin(angle)) for angle in angles]
     inner = [(mount.s_x + r0 * cos(angle), mount.s_y + r0 * sin(angle)) for angle in reversed(angles)]
     return tuple(outer + inner)
@@ -31,11 +34,16 @@ def workspace(model: Model) -> Outline:
 
 
 def bands(model: Model, width_l: float, width_psi: float) -> tuple[Outline, ...]:
-    """Return where arm and base blend, for transition widths in length [m] and bearing [rad]; they do not overlap."""
-    space, q, p = model.workspace, 0.5 * width_l, 0.5 * width_psi
+    """Return where arm and base blend, for transition widths in length [m] and bearing [rad]; they do not overlap.
+
+    What lies beyond the arm's reach is left out.
+    """
+    space, (_, reach) = model.workspace, model.arm.reach
+    q, p = 0.5 * min(width_l, 2.0 * reach), 0.5 * min(width_psi, 2.0 * pi)
     l_min, l_max, psi_min, psi_max = space.l_min, space.l_max, space.psi_min, space.psi_max
+    far = min(l_max + q, reach)
     parts = (
-        (l_max - q, l_max + q, psi_min - p, psi_max + p),
+        (l_max - q, far, psi_min - p, psi_max + p),
         (l_min - q, l_min + q, psi_min - p, psi_max + p),
         (l_min + q, l_max - q, psi_max - p, psi_max + p),
         (l_min + q, l_max - q, psi_min - p, psi_min + p),

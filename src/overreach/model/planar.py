@@ -30,6 +30,10 @@ class PlanarRobot(Record, frozen=True):
     gripper: bool = False
     summary: str = ""
 
+    def placed(self, mount: Mount, workspace: Workspace) -> PlanarRobot:
+        """Return the same with its arm at another place, and another workspace; raises WorkspaceError."""
+        return msgspec.structs.replace(self, mount=mount, workspace=workspace)
+
     def __post_init__(self) -> None:
         check_workspace(self, self.workspace)
         check_reach(self, self.start.l)
@@ -38,7 +42,7 @@ class PlanarRobot(Record, frozen=True):
 def load_planar(text: str = "") -> PlanarRobot:
     """Return the robot described by TOML `text`; what it leaves out is as in `data/planar.toml`.
 
-    Raises SetupError with what is wrong where.
+    Raises SetupError that says what is wrong, and where.
     """
     usual = importlib.resources.files("overreach.model").joinpath("data/planar.toml").read_text("utf-8")
     try:

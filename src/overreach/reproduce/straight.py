@@ -10,7 +10,8 @@ from matplotlib.patches import Polygon
 from overreach.law.laws import Exact, Paper
 from overreach.reproduce.lab import Lab, Section
 from overreach.reproduce.look import ARM, BASE, HAND, MUTED, panels, thin
-from overreach.run.simulate import Row, Run
+from overreach.run.row import Row
+from overreach.run.simulate import Run
 
 AIM = 0.4
 """Where the hand points at the start, and is to go [rad]."""

@@ -6,7 +6,9 @@ import contextlib
 from collections.abc import Callable
 from concurrent.futures import Future
 from math import inf
-from typing import final
+from typing import NamedTuple, final
+
+import msgspec
 
 from overreach import __version__
 from overreach.clock import Clock
@@ -22,28 +24,46 @@ from overreach.link.messages import (
     ConfigureRequest,
     Hello,
     Refused,
+    encode,
 )
 from overreach.link.robot_end import RobotEnd
 from overreach.plugs import law_plug
 from overreach.requests import RestartRequest
-from overreach.robot_side.report import Reporter, welcome
-from overreach.robot_side.settings import Builder, Built, blends_to_choose, build, laws_to_choose, usual
+from overreach.robot_side.report import Reporter
+from overreach.robot_side.settings import Builder, Built, build, usual
+from overreach.robot_side.welcome import Reception
 from overreach.robots.base import Robot
 from overreach.types import RobotState
 
 STATE_PERIOD_S = 1.0 / 60.0
-"""A state is sent when a command was accepted, and at the latest after this [s]."""
+"""A state is sent when a command is accepted, and at the latest this long [s] after the last one."""
 SLOW_MOST = 3.0
 FORGIVEN = 0.1
-"""As many decisions as this may take longer than a period; each that does not takes this much of it back."""
+"""A decision longer than a period adds 1 to a count; any other takes FORGIVEN off it. At SLOW_MOST it is a fault."""
 HUNG_S = 0.05
 """A decision that takes this long [s] is a fault by itself."""
 EXACT = Choice("exact")
 
 
 def _libraries(law: Choice) -> tuple[str, ...]:
-    """Return what decides which libraries a law needs: its name, and what it is told by a name, such as its solver."""
+    """Return what decides which libraries a law needs: its name and its text parameters, such as its solver."""
     return law.name, *[value for _, value in sorted(law.parameters.items()) if isinstance(value, str)]
+
+
+class Building(NamedTuple):
+    """Settings that are being made ready: what becomes of them, who is told, whether it may take a while."""
+
+    future: Future[Built]
+    answer: Callable[[Answer], None]
+    slow: bool
+
+
+def _of_another(hello: Hello) -> Refused:
+    """Return the answer to an operator's side that speaks another protocol."""
+    return Refused(
+        f"the robot side speaks protocol {PROTOCOL} (overreach {__version__}), the operator side "
+        f"{hello.protocol} (overreach {hello.version}): install the same version on both"
+    )
 
 
 @final
@@ -57,23 +77,23 @@ class Loop:
         self._link = link
         self._clock = clock
         self._model = robot.model
-        self.settings = self._defaults = usual(robot.model, law)
+        self.settings = usual(robot.model, law)
         built = build(self.settings, robot.model)
         self.pilot = Pilot(built.model, built.law)
-        self._laws, self._blends = laws_to_choose(), blends_to_choose()
+        self._reception = Reception(self.pilot, link.name, rate, robot.simulated, self.settings)
+        self._reception.take(built)
         self._loaded = {_libraries(law)}
         self._builder = Builder()
-        self._building: tuple[Future[Built], Callable[[Answer], None]] | None = None
+        self._building: Building | None = None
         self._reporter = Reporter()
-        self._revision = 0
         self._tick = 0
         self._sent_at = -inf
         self._slow = 0.0
 
     def run(self, running: Callable[[], bool]) -> None:
-        """Tick at `rate` while `running()`. An overrun is counted and the missed ticks are left out.
+        """Tick at `rate` while `running()`. Overruns are counted and missed ticks are skipped.
 
-        However it ends, by `running` or by an exception, the robot ramps to zero first.
+        However it ends, by `running` or by an exception, the robot first ramps to zero.
         """
         period = 1.0 / self.rate
         deadline = self._clock.now() + period
@@ -90,13 +110,16 @@ class Loop:
                     deadline += missed * period
         finally:
             self._come_to_rest(period)
-            self._builder.close()
 
     def tick(self, now: float, dt: float) -> None:
-        """Do one period: robot and link in, the pilot, robot and link out."""
+        """Run one period: read robot and link, decide, write to both."""
         self._serve(now)
         state = self._read(now)
         command = self._link.newest_command()
+        if command is not None and self._building is not None and self._building.slow:
+            # Libraries that load make the loop late: meanwhile nobody drives, and a press made now does not count.
+            command = msgspec.structs.replace(command, held=False)
+            self.pilot.gate.latch.spend(command.grip)
         heard = self.pilot.gate.seq
         begun = self._clock.now()
         tick = self.pilot.tick(state, command, now, dt)
@@ -122,7 +145,7 @@ class Loop:
             self.pilot.fail(f"The robot could not be written to: {told(error)}.")
 
     def _watch(self, took: float, dt: float) -> None:
-        """Latch a fault where decisions took more than a period, `dt` [s], SLOW_MOST times of late, or HUNG_S once."""
+        """Latch a fault if decisions recently took more than a period `dt` [s] SLOW_MOST times, or HUNG_S once."""
         self._slow = max(0.0, self._slow + (1.0 if took > dt else -FORGIVEN))
         if self._slow >= SLOW_MOST or took > HUNG_S:
             self._slow = 0.0
@@ -130,13 +153,13 @@ class Loop:
             self.pilot.fail(f"The law {law!r} takes {took * 1e3:.0f} ms; a period has {dt * 1e3:g} ms.")
 
     def _come_to_rest(self, dt: float) -> None:
-        """Ramp to zero by the guard alone, then stop. Whoever watches is told; nobody can hold it up."""
+        """Ramp to zero by the guard alone, then stop. States are still published; no exception can hold it up."""
         deadline = self._clock.now()
         moving = True
         try:
             while moving:
                 moving = any(self.pilot.controller.guard.written)
-                deadline = max(deadline + dt, self._clock.now())  # what was missed is not made up for
+                deadline = max(deadline + dt, self._clock.now())  # missed periods are not made up for
                 self._clock.sleep_until(deadline)
                 tick = self.pilot.ramp(self._clock.now(), dt)
                 self._tick += 1
@@ -145,15 +168,15 @@ class Loop:
                 with contextlib.suppress(Exception):
                     self._publish(tick)
         finally:
-            with contextlib.suppress(Exception):  # it was written zero already
+            with contextlib.suppress(Exception):  # zero was written already
                 self._robot.stop(self._clock.now())
 
     def _serve(self, now: float) -> None:
         """Carry out what was asked for since the last tick."""
-        for hello, answer in self._link.hellos():
-            answer(self._welcome(hello))
-        if self._building is not None and self._building[0].done():
-            self._swap(*self._building)
+        for hello, greet in self._link.hellos():
+            greet(self._reception.welcome if hello.protocol == PROTOCOL else _of_another(hello))
+        if self._building is not None and self._building.future.done():
+            self._swap(self._building)
         for request, answer in self._link.requests():
             try:
                 if isinstance(request, ConfigureRequest):
@@ -179,47 +202,44 @@ class Loop:
         return Accepted()
 
     def _begin(self, request: ConfigureRequest, answer: Callable[[Answer], None]) -> None:
-        """Begin to build other settings beside the loop; raises SetupError where they cannot be used now."""
+        """Begin to build new settings beside the loop; raises SetupError if they cannot be used now."""
         settings, resting = request.settings, self.pilot.resting
         if settings.frame is not self.settings.frame and not resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
         law = settings.law.name
-        slow = law in self._laws and law_plug(law).slow_to_load and _libraries(settings.law) not in self._loaded
+        slow = (
+            law in self._reception.laws and law_plug(law).slow_to_load and _libraries(settings.law) not in self._loaded
+        )
         if slow and not resting:
             raise SetupError(f"Let go first: {law!r} has to be loaded, which makes the loop late for a moment.")
         if self._building is not None:
             raise SetupError("Other settings are being made ready: try again.")
-        self._building = self._builder.begin(settings, self._model), answer
+        self._building = Building(self._builder.begin(settings, self._model), answer, slow)
 
-    def _swap(self, future: Future[Built], answer: Callable[[Answer], None]) -> None:
-        """Use settings that are ready, or tell why they are not."""
+    def _swap(self, building: Building) -> None:
+        """Put finished settings into force, or answer why they cannot be used."""
         self._building = None
         try:
-            built = future.result()
-            self.pilot.configure(built.law, built.model)
-            self.pilot.gate.set_speed_scale(built.settings.speed_scale)
+            built = building.future.result()
+            self.pilot.configure(built.law, built.model, built.settings.speed_scale, built.planner)
         except OverreachError as error:
-            answer(Refused(str(error)))
-        except BaseException as error:  # a law that is a plug-in may raise anything, where it is imported or made
+            building.answer(Refused(str(error)))
+        except BaseException as error:  # a plug-in law may raise anything when it is imported or made
             self.pilot.fail(f"The robot side met {told(error)}.")
-            answer(Refused(f"Fault: the robot side met {told(error)}."))
+            building.answer(Refused(f"Fault: the robot side met {told(error)}."))
         else:
             self.settings = built.settings
             self._loaded.add(_libraries(built.settings.law))
-            self._revision += 1
-            answer(Accepted())
-
-    def _welcome(self, hello: Hello) -> Answer:
-        if hello.protocol != PROTOCOL:
-            return Refused(
-                f"the robot side speaks protocol {PROTOCOL} (overreach {__version__}), the operator side "
-                f"{hello.protocol} (overreach {hello.version}): install the same version on both"
-            )
-        name, choices = self._link.name, (self._laws, self._blends)
-        simulated, settings = self._robot.simulated, (self.settings, self._defaults)
-        return welcome(self.pilot, *settings, name, self.rate, simulated, *choices, self._revision)
+            self._reception.take(built)
+            building.answer(Accepted())
 
     def _publish(self, tick: Tick) -> None:
+        """Tell of a tick; what cannot be sent, of an arm or robot that is a plug-in, is a fault."""
         self._sent_at = tick.now
-        malformed, revision = self._link.malformed, self._revision
-        self._link.publish(self._reporter.state(tick, self.pilot, self._tick, self.overruns, malformed, revision))
+        malformed, revision = self._link.malformed, self._reception.revision
+        try:
+            state = encode(self._reporter.state(tick, self.pilot, self._tick, self.overruns, malformed, revision))
+        except Exception as error:
+            self.pilot.fail(f"The robot's state cannot be told: {told(error)}.")
+            return
+        self._link.publish(state)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 import signal
@@ -22,7 +23,7 @@ FIFO_PRIORITY = 20
 """Above ordinary threads, below the kernel's own."""
 PARENT_LOOK_S = 0.1
 SPIN_S = 0.0004
-"""The loop wakes this long [s] before its time and looks at the clock until then: 8 % of a core at 200 Hz ..."""
+"""The loop wakes this long [s] before its time and polls the clock until then: 8 % of a core at 200 Hz ..."""
 SPIN_PART = 0.1
 """... and never more than this part of a period."""
 
@@ -47,8 +48,8 @@ def run_robot(
 ) -> None:
     """Run the robot side until SIGINT, SIGTERM or SIGHUP or, with `parent`, until that process has ended.
 
-    Each of these ramps the robot to zero. name: in the network, by default the robot's own. Raises SetupError or
-    LinkError before anything moves.
+    Each of these ramps the robot to zero. name: its name in the network, by default the robot's own. Raises SetupError
+    or LinkError before anything moves.
     """
     check_rate(rate)
     endpoint = check_endpoint(listen)
@@ -65,7 +66,11 @@ def run_robot(
         if each is not signal.SIGHUP or signal.getsignal(each) is not signal.SIG_IGN:  # as `nohup` leaves it
             signal.signal(each, end)
     device = load_robot(robot, clock.now())
-    link = RobotEnd(endpoint, name or check_name(device.model.name))
+    try:
+        link = RobotEnd(endpoint, name or check_name(device.model.name))
+    except BaseException:
+        device.stop(clock.now())
+        raise
     try:
         loop = Loop(device, link, clock, rate, law)
         fifo = real_time()
@@ -85,4 +90,6 @@ def run_robot(
         gc.freeze()
         loop.run(running)
     finally:
+        with contextlib.suppress(Exception):  # whatever came in between, also before the first tick
+            device.stop(clock.now())
         link.close()

@@ -1,31 +1,27 @@
-"""What the loop tells: a tick as the state on the wire, and the first word to an operator."""
+"""What the loop tells: a tick as the state on the wire."""
 
 from __future__ import annotations
 
 from math import cos, inf, sin
 from typing import final
 
-from overreach import __version__
+import msgspec
+
 from overreach.arm.chain import Chain, Point
 from overreach.arm.mount import Mount
-from overreach.control.pilot import Pilot, obeys
+from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
-from overreach.gate.gate import STALE_S
-from overreach.law.blend import Blend, Step
-from overreach.law.body import WholeBody
-from overreach.law.frame import axes
-from overreach.link.messages import PROTOCOL, Plug, Scene, Settings, State, Welcome
-from overreach.model.model import Model
-from overreach.model.outline import bands, workspace
+from overreach.link.messages import State
 from overreach.robot_side.timing import Lateness
-from overreach.types import BaseTwist, Frame, Pose
+from overreach.types import BaseTwist, Pose
 
 LATE_EVERY_S = 1.0
+_with = msgspec.structs.replace
 
 
 @final
 class Reporter:
-    """Makes wire states of ticks; keeps the loop's lateness over the last second."""
+    """Turns ticks into wire states; keeps the loop's lateness over the last second."""
 
     def __init__(self) -> None:
         self.late = Lateness()
@@ -40,7 +36,7 @@ class Reporter:
             self.late.reset()
         verdict, split, polar, state = tick.verdict, tick.split, tick.polar, tick.decided.state
         model = pilot.model
-        chain = model.arm.at(state.q, model.mount)
+        chain = pilot.controller.chain
         p50, p99, most = self._told
         return State(
             t=tick.now,
@@ -66,10 +62,10 @@ class Reporter:
             v_m=split.v_m,
             w_m=split.w_m,
             base=tick.base,
-            pose=state.pose,
+            pose=_with(state.pose, heading=state.pose.yaw),
             joints=state.q,
             hand=in_world(state.pose, chain.hand),
-            velocity=velocity(state.pose, chain, tick.base, tick.joints, model.mount),
+            velocity=velocity(state.pose, chain, tick.base, split.v_m, split.w_m, model.mount),
             links=tuple([in_world(state.pose, point) for point in chain.points]),
             late_p50=p50,
             late_p99=p99,
@@ -81,62 +77,21 @@ class Reporter:
 
 
 def in_world(pose: Pose, point: Point) -> Point:
-    """Return where a point of the base frame is in the world, for a base on level ground [m]."""
+    """Return a point of the base frame in world coordinates [m], for a base on level ground."""
     c, s = cos(pose.yaw), sin(pose.yaw)
     x, y, z = point
-    return pose.x + c * x - s * y, pose.y + s * x + c * y, pose.z + z
+    return float(pose.x + c * x - s * y), float(pose.y + s * x + c * y), float(pose.z + z)
 
 
-def velocity(pose: Pose, chain: Chain, base: BaseTwist, joints: tuple[float, ...], mount: Mount) -> Point:
+def velocity(pose: Pose, chain: Chain, base: BaseTwist, v_m: float, w_m: float, mount: Mount) -> Point:
     """Return the hand's true velocity in the world [m/s], from the rates of base and arm that are written.
 
-    In the base frame: v + w_z z x p_e + v_m r + l w_m t, and v_z up.
+    In the base frame, along the ground: v + w_z z x p_e + v_m r + l w_m t.
     """
-    v_m, w_m, v_z, *_ = chain.moved(joints)
     x, y, _ = chain.hand
     r_x, r_y = cos(chain.psi + mount.yaw), sin(chain.psi + mount.yaw)
     v_t = chain.l * w_m
     v_x = base.v_x - base.w_z * y + v_m * r_x - v_t * r_y
     v_y = base.v_y + base.w_z * x + v_m * r_y + v_t * r_x
     c, s = cos(pose.yaw), sin(pose.yaw)
-    return c * v_x - s * v_y, s * v_x + c * v_y, v_z
-
-
-def welcome(
-    pilot: Pilot,
-    settings: Settings,
-    defaults: Settings,
-    name: str,
-    rate: float,
-    simulated: bool,
-    laws: dict[str, Plug],
-    blends: dict[str, Plug],
-    revision: int,
-) -> Welcome:
-    """Return the first word to an operator."""
-    model = pilot.model
-    return Welcome(
-        protocol=PROTOCOL,
-        version=__version__,
-        name=name,
-        model=model.name,
-        rate=rate,
-        limits=pilot.gate.limits,
-        reach=model.arm.reach,
-        obeys=tuple(sorted(obeys(model))),
-        axes={frame.value: axes(frame) for frame in Frame},
-        stop_time=STALE_S + 1.0 / rate + pilot.controller.guard.stop_s,
-        simulated=simulated,
-        laws=laws,
-        blends=blends,
-        settings=settings,
-        defaults=defaults,
-        scene=scene(model, pilot.controller.law),
-        revision=revision,
-    )
-
-
-def scene(model: Model, law: WholeBody) -> Scene:
-    """Return what is drawn about the base."""
-    blend: Blend = getattr(law, "blend", Step())
-    return Scene(model.base.footprint, workspace(model), bands(model, blend.width_l, blend.width_psi))
+    return float(c * v_x - s * v_y), float(s * v_x + c * v_y), 0.0

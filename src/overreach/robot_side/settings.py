@@ -1,28 +1,34 @@
-"""What an operator may change: the settings as a law and a model, made beside the loop, never on its thread."""
+"""What an operator may change: settings become a law and a model, built beside the loop, never on its thread."""
 
 from __future__ import annotations
 
 import contextlib
 import gc
 import os
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable
+from concurrent.futures import Future
+from threading import Thread
 from typing import final
 
 from overreach.errors import SetupError
-from overreach.law.body import WholeBody
-from overreach.link.messages import Choice, Plug, Settings
-from overreach.model.model import Model, check_workspace, placed
-from overreach.parameters import schema, summary
+from overreach.law.blend import Blend, Step
+from overreach.law.body import Planner, WholeBody
+from overreach.link.messages import Choice, Plug, Scene, Settings, encode
+from overreach.model.model import Model, check_workspace
+from overreach.model.outline import bands, workspace
+from overreach.parameters import Parameters, schema, summary
 from overreach.plugs import BLENDS, blend_plug, blends_in, law_names, law_plug, load_blend, load_law, names, usable
 from overreach.types import Record
 
 
 class Built(Record, frozen=True):
-    """Settings, as a law and a robot's model that can be used."""
+    """Settings, as a law, its planner and a robot's model that can be used, and as they look."""
 
     settings: Settings
     law: WholeBody
     model: Model
+    planner: Planner
+    scene: Scene
 
 
 def usual(model: Model, law: Choice) -> Settings:
@@ -31,56 +37,64 @@ def usual(model: Model, law: Choice) -> Settings:
 
 
 def build(settings: Settings, model: Model) -> Built:
-    """Return `settings` ready for use; raises SetupError where they cannot be used. May import, and take its time."""
+    """Return `settings` ready for use; raises SetupError if they cannot be used. May import, and be slow."""
     if not 0.0 < settings.speed_scale <= 1.0:
         raise SetupError(f"speed scale must be > 0 and <= 1, got {settings.speed_scale:g}")
-    placed_model = placed(model, model.mount, settings.workspace)
+    placed_model = model.placed(model.mount, settings.workspace)
     check_workspace(placed_model, settings.workspace)
     blend = load_blend(settings.blend.name, settings.blend.parameters)
     law = load_law(settings.law.name, settings.law.parameters, blend)
-    law.planner(placed_model)  # what it needs is loaded and made here
-    return Built(settings, law, placed_model)
+    drawn: Blend = getattr(law, "blend", Step())
+    scene = Scene(model.base.footprint, workspace(placed_model), bands(placed_model, drawn.width_l, drawn.width_psi))
+    encode(scene)  # what cannot be sent is told now
+    return Built(settings, law, placed_model, law.planner(placed_model), scene)
 
 
 def laws_to_choose() -> dict[str, Plug]:
-    """Return the laws and whole bodies that can be had, with their parameters."""
-    found = usable(law_names(), law_plug)
-    return {
-        name: Plug(summary(plug), schema(plug), blends_in(plug))
-        for name, plug in found.items()
-        if not isinstance(plug, str)
-    }
+    """Return the laws and whole bodies that can be used, with their parameters."""
+    return _to_choose(usable(law_names(), law_plug), lambda plug: Plug(summary(plug), schema(plug), blends_in(plug)))
 
 
 def blends_to_choose() -> dict[str, Plug]:
-    """Return the blends that can be had, with their parameters."""
-    found = usable(names(BLENDS), blend_plug)
-    return {name: Plug(summary(plug), schema(plug)) for name, plug in found.items() if not isinstance(plug, str)}
+    """Return the blends that can be used, with their parameters."""
+    return _to_choose(usable(names(BLENDS), blend_plug), lambda plug: Plug(summary(plug), schema(plug)))
 
 
-def ordinary() -> None:
-    """Give this thread an ordinary priority: it would have that of the loop which starts it."""
+def _to_choose(found: dict[str, type[Parameters] | str], made: Callable[[type[Parameters]], Plug]) -> dict[str, Plug]:
+    """Return what can be described and sent of what was found."""
+    plugs = {}
+    for name, plug in found.items():
+        if not isinstance(plug, str):
+            with contextlib.suppress(Exception):
+                described = made(plug)
+                encode(described)
+                plugs[name] = described
+    return plugs
+
+
+def _ordinary() -> None:
+    """Give this thread an ordinary priority; it would inherit that of the loop, which starts it."""
     with contextlib.suppress(AttributeError, OSError):
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 @final
 class Builder:
-    """Builds settings on a thread of its own, one after the other."""
-
-    def __init__(self) -> None:
-        self._thread = ThreadPoolExecutor(1, "settings", ordinary)
+    """Builds settings on threads of their own, which nobody waits for at the end."""
 
     def begin(self, settings: Settings, model: Model) -> Future[Built]:
-        """Begin to build; the future holds what came of it, or the SetupError."""
-        return self._thread.submit(self._build, settings, model)
+        """Begin to build; the future holds the result, or the SetupError."""
+        future: Future[Built] = Future()
+        Thread(target=self._build, args=(settings, model, future), name="settings", daemon=True).start()
+        return future
 
     @staticmethod
-    def _build(settings: Settings, model: Model) -> Built:
-        built = build(settings, model)
+    def _build(settings: Settings, model: Model, future: Future[Built]) -> None:
+        _ordinary()
+        try:
+            built = build(settings, model)
+        except BaseException as error:  # a law that is a plug-in may raise anything: it is told where it is taken
+            future.set_exception(error)
+            return
         gc.freeze()  # freeze what an import allocated, so that the collector does not scan it while driving
-        return built
-
-    def close(self) -> None:
-        """Leave what is not begun undone."""
-        self._thread.shutdown(wait=False, cancel_futures=True)
+        future.set_result(built)

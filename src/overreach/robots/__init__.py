@@ -1,1 +1,1 @@
-"""What moves."""
+"""Robots: the Protocol that a driver implements, and the simulation."""

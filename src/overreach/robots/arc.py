@@ -9,7 +9,7 @@ def arc(x: float, y: float, theta: float, v: float, w: float, dt: float) -> tupl
     """Return the base pose (x, y [m], theta [rad]) after `dt` [s] of the twist v [m/s], w [rad/s].
 
     The chord of the arc is v dt sinc(h) long and points to theta + h, with h = w dt / 2. Exact for any
-    dt; no case for w = 0 but the series of sinc, whose next term is below 1e-17 there.
+    dt; near w = 0 the series of sinc is used, whose next term is below 1e-17 there.
     """
     h = 0.5 * w * dt
     sinc = 1.0 - h * h / 6.0 if -1e-4 < h < 1e-4 else sin(h) / h

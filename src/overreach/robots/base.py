@@ -1,4 +1,4 @@
-"""What moves: the Protocol that a robot's driver or simulation answers to, and what the loop takes."""
+"""The Protocol of a robot: what the loop needs from a driver or a simulation."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ class Robot(Protocol):
 
     @property
     def model(self) -> Model:
-        """What it is."""
+        """The robot's description."""
         ...
 
     @property
     def simulated(self) -> bool:
-        """Whether nothing real moves: it may be put back to its start."""
+        """Whether nothing real moves, so that it may be put back to its start."""
         ...
 
     def read(self, now: float) -> RobotState:
-        """Return the state at `now`, with the motion of the base that is happening. May raise: that is a fault."""
+        """Return the state at `now`, with the present motion of the base. May raise: that is a fault."""
         ...
 
     def write(
@@ -30,15 +30,15 @@ class Robot(Protocol):
     ) -> None:
         """Ask for a base twist [m/s, rad/s], joint rates [rad/s, m/s] and a gripper's opening, 0 to 1 (None: it stays).
 
-        They hold until the next call, which comes by `deadline` [s] where all is well: a robot that can come to rest by
-        itself does so after it. May raise: that is a fault.
+        They hold until the next call, which comes by `deadline` [s] if all is well; past it, a robot that can come to
+        rest by itself does so. May raise: that is a fault.
         """
         ...
 
     def stop(self, now: float) -> None:
-        """Stand still: zero velocity, held. Called at the end of every run, in every path."""
+        """Stand still: hold zero velocity. Called at the end of every run, on every path."""
         ...
 
     def restart(self, now: float) -> None:
-        """Go back to the start, at rest. Asked of a simulated robot alone."""
+        """Go back to the start, at rest. Called only for a simulated robot."""
         ...

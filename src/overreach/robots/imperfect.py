@@ -1,4 +1,4 @@
-"""What keeps a real robot from doing at once what it is told, and from saying at once what it does."""
+"""Why a real robot neither does at once what it is told, nor reports at once what it does."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class Imperfection(Record, frozen=True):
     """What is not ideal. All zero (gain 1): an ideal robot.
 
     Actuators: delay_s: dead time of each [s]; lag_s: time constant of its first-order lag [s]; base_lag_s: the base's,
-    where it is another; dead_band: rates [m/s, rad/s] below which nothing moves; gain: what moves, as a part of what
-    was asked for. Sensors: noise: standard deviation of the measured joint angles [rad]; rate_noise: of
-    all measured rates [m/s, rad/s]; feedback_s: time from one report to the next [s], 0 for one whenever it is read;
+    if it differs; dead_band: rates [m/s, rad/s] below which nothing moves; gain: what moves, as a fraction of what was
+    asked for. Sensors: noise: standard deviation of the measured joint angles [rad]; rate_noise: of
+    all measured rates [m/s, rad/s]; feedback_s: period of the reports [s], 0 for one at every read;
     feedback_delay_s: age of a report when it comes [s]; seed: of the noise. Raises SetupError if a value is negative or
     not finite.
     """
@@ -46,7 +46,7 @@ class Imperfection(Record, frozen=True):
 
     @property
     def ideal(self) -> bool:
-        """Say whether what is asked for happens at once and is measured as it is."""
+        """Say whether every request takes effect at once and is measured exactly."""
         return self == Imperfection(seed=self.seed)
 
     def lags(self, channels: int) -> tuple[float, ...]:
@@ -62,7 +62,7 @@ def _check(name: str, value: float) -> None:
 
 @final
 class Actuators:
-    """Rates as they are asked for -> rates as they happen, for any number of channels; the first is a base's speed."""
+    """Rates asked for -> actual rates, for any number of channels; the first is the base's speed."""
 
     def __init__(self, channels: int, imperfection: Imperfection) -> None:
         self._delay = imperfection.delay_s
@@ -77,7 +77,7 @@ class Actuators:
 
     @property
     def ideal(self) -> bool:
-        """Say whether what is asked for happens at once."""
+        """Say whether every request takes effect at once."""
         return self._delay == 0.0 and not self._lagging
 
     def ask(self, rates: tuple[float, ...], now: float) -> None:
@@ -102,7 +102,7 @@ class Actuators:
         return min(end, self._queue[0][0]) if self._queue else end
 
     def advance(self, dt: float) -> tuple[float, ...]:
-        """Return the mean rates over the next `dt` [s] and move on by it.
+        """Return the mean rates over the next `dt` [s], and advance by it.
 
         First-order lag: h(t) = g + (h0 - g) exp(-t/tau), with the mean g + (h0 - g) (1 - exp(-dt/tau)) tau/dt.
         """
@@ -124,7 +124,7 @@ class Actuators:
 
 @final
 class Sensors:
-    """States as they are -> states as they are reported: noisy, now and then, late."""
+    """True states -> reported states: noisy, periodic, late."""
 
     def __init__(self, imperfection: Imperfection, now: float) -> None:
         self._noise = imperfection.noise
@@ -137,11 +137,11 @@ class Sensors:
         self._last: RobotState | None = None
 
     def due(self, end: float) -> float:
-        """Return the next time, by `end`, at which the state is to be seen (else `end`)."""
+        """Return the next time, up to `end`, at which the state is sampled (else `end`)."""
         return min(end, self._next) if self._every > 0.0 else end
 
     def see(self, state: RobotState) -> None:
-        """Look at the true `state`, at its time; what is not due is not seen."""
+        """Sample the true `state` at its time; if no sample is due, do nothing."""
         if self._every > 0.0:
             if state.t < self._next:
                 return
@@ -150,12 +150,12 @@ class Sensors:
             self._coming.append(self._noisy(state))
 
     def report(self, state: RobotState, now: float) -> RobotState:
-        """Return what there is to be read at `now` [s], where the truth is `state`."""
+        """Return what is read at `now` [s] while the true state is `state`."""
         if self._every == 0.0 and self._delay == 0.0:
             return self._noisy(state)
         while self._coming and self._coming[0].t + self._delay <= now:
             self._last = self._coming.popleft()
-        # What comes before the first report is of a robot that has always stood there.
+        # Before the first report, assume that the robot has always stood there.
         return self._last or msgspec.structs.replace(self._coming[0] if self._coming else state, t=now - self._delay)
 
     def _noisy(self, state: RobotState) -> RobotState:

@@ -1,4 +1,4 @@
-"""Robots by name: a driver that is installed, or a description, driven in simulation."""
+"""Robots by name: an installed driver, or a description that is simulated."""
 
 from __future__ import annotations
 

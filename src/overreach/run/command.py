@@ -10,7 +10,7 @@ from overreach.errors import ScenarioError
 from overreach.types import Record
 
 FASTEST = 1e3
-"""Greatest command [m/s, rad/s]: above this only a mistyped number can be meant."""
+"""Greatest command [m/s, rad/s]: anything above this can only be a mistyped number."""
 
 
 class Segment(Record, frozen=True):

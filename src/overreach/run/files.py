@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from overreach.errors import SetupError
-from overreach.run.simulate import Row
+from overreach.run.row import Row
 
 
 def check_writable(path: Path, option: str) -> None:
-    """Raise SetupError where `path`, given with `option`, cannot become a file, before any work is done."""
+    """Raise SetupError, before any work is done, if `path`, given with `option`, cannot be written."""
     folder = path.parent
     if path.is_dir():
         raise SetupError(
@@ -28,9 +28,9 @@ def check_writable(path: Path, option: str) -> None:
 
 
 def try_to_write(folder: Path, asked: str) -> None:
-    """Raise SetupError, beginning with what was `asked`, where no file can be made in `folder`.
+    """Raise SetupError, with a text that begins with `asked`, if no file can be made in `folder`.
 
-    It is tried: os.access says yes to folders in which nothing can be made.
+    This tries to make one: os.access says yes to folders in which nothing can be made.
     """
     try:
         with tempfile.TemporaryFile(dir=folder):
@@ -59,7 +59,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_csv(path: Path, rows: Sequence[Row]) -> None:
-    """Write `rows` under a header of the field names, a column a joint; numbers round-trip exactly."""
+    """Write `rows` under a header of the field names, a column per joint; numbers round-trip exactly."""
     joints = [f"theta_{k + 1}" for k in range(len(rows[0].theta))]
     write_table(path, [*Row._fields[:-1], *joints], [(*row[:-1], *row.theta) for row in rows])
 

@@ -27,7 +27,7 @@ class NoBounds(Bounds):
 
 @final
 class LawAlone(HandController):
-    """A controller that bounds nothing: every rate is finite, that is all. Nothing that moves a robot imports it."""
+    """A controller that bounds nothing and only checks that rates are finite. Nothing that moves a robot imports it."""
 
     def _believe(self, state: RobotState | None, dt: float, now: float | None) -> None:
         if state is not None:

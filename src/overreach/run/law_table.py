@@ -14,7 +14,7 @@ USUAL = "tanh"
 
 
 def read_law(table: dict[str, Any], name: str) -> tuple[Blend, dict[str, dict[str, Any]]]:
-    """Return the blend, and the parameters of laws by their names; raises ScenarioError where one cannot be used."""
+    """Return the blend, and the parameters of laws by their names; raises ScenarioError if one cannot be used."""
     flat = {key: value for key, value in table.items() if not isinstance(value, dict)}
     try:
         kind = flat.pop("blend", USUAL)
@@ -34,7 +34,7 @@ def read_law(table: dict[str, Any], name: str) -> tuple[Blend, dict[str, dict[st
 
 
 def _blend(kind: str, given: dict[str, Any], name: str) -> Blend:
-    """Return the blend of that kind; parameters of other blends may stand beside its own, for the day it is changed."""
+    """Return the blend of that kind; parameters of other blends may be given too, so that switching is easy."""
     chosen = blend_plug(kind)
     known = {one.name: one for other in names(BLENDS) for one in schema(blend_plug(other))}
     for key, value in given.items():

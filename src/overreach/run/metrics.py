@@ -10,23 +10,20 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from math import cos, hypot, sin, sqrt
 from statistics import median
-from typing import TYPE_CHECKING
 
 from overreach.clock import nanoseconds
 from overreach.law.body import WholeBody
 from overreach.law.frame import FRAMES, meant, of_two
 from overreach.model.model import Model
 from overreach.model.workspace import Workspace
+from overreach.run.row import Row
 from overreach.types import Frame, Twist
-
-if TYPE_CHECKING:
-    from overreach.run.simulate import Row
 
 MOST_CALLS = 2_000
 """Steps of a run on which its law is timed."""
 
 ARM_BELOW, BASE_ABOVE = 0.25, 0.75
-"""A share below the first is the arm's, above the second the base's; between them nothing changes hands."""
+"""A share below the first counts as the arm's, above the second as the base's; in between nothing changes hands."""
 
 Errors = Sequence[tuple[float, float]]
 
@@ -74,7 +71,7 @@ def slopes(values: Sequence[float], dt: float) -> list[float]:
 
 
 def total_variation(values: Sequence[float]) -> float:
-    """Return sum |x(k+1) - x(k)|, in the value's unit: how much is changed in all, back and forth."""
+    """Return sum |x(k+1) - x(k)|, in the value's unit: the total of all changes, back and forth."""
     return sum(abs(b - a) for a, b in pairwise(values))
 
 
@@ -114,7 +111,7 @@ def saturated(rates: Iterable[tuple[float, ...]], most: tuple[float, ...]) -> fl
 def cost_per_step(law: WholeBody, frame: Frame, rows: Sequence[Row], model: Model) -> float:
     """Return the median time of one plan of `law` [us], over the states and commands of a run, evenly picked.
 
-    Unlike the rest it is measured, not computed: another time, another number. `overreach bench` does it with care.
+    Unlike the rest it is measured, not computed, so it differs from run to run. `overreach bench` does it with care.
     """
     angle, plan, took = FRAMES[frame], law.planner(model), []
     for row in rows[:: max(1, len(rows) // MOST_CALLS)]:

@@ -7,7 +7,7 @@
 [law.NAME]   parameters of the law NAME, where the scenario is run with it: [law.weighted] base_weight = 2.0
 [command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
 [dither]     l, psi, f: a tremor added to the command, as swings of the hand [m, rad] at f [Hz]
-[limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, so that the law is seen
+[limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, to show the law alone
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from overreach.arm.mount import Mount
 from overreach.errors import ScenarioError, UnknownNameError
 from overreach.gate.limits import Limits
 from overreach.law.blend import Blend
-from overreach.model.model import Model, check_reach, check_workspace, placed
+from overreach.model.model import Model, check_reach, check_workspace
 from overreach.model.workspace import Workspace
 from overreach.plugs import load_model
 from overreach.robots.imperfect import Imperfection
@@ -37,7 +37,7 @@ from overreach.types import Frame, Record
 
 LONGEST_S = 1e6
 MOST_STEPS = 20_000_000
-"""Longest run: 20,000 s at 1 ms. Above this a mistyped dt is likelier than a wish."""
+"""Longest run: 20,000 s at 1 ms. Above this, dt is more likely mistyped than meant."""
 
 
 class RobotTable(Record, frozen=True):
@@ -55,7 +55,7 @@ class RobotTable(Record, frozen=True):
 
 
 class WorkspaceTable(Record, frozen=True):
-    """The table [workspace]; what is left out is the robot's own."""
+    """The table [workspace]; a limit that is left out is the robot's own."""
 
     l_min: float | None = None
     l_max: float | None = None
@@ -74,7 +74,7 @@ class CommandTable(Record, frozen=True):
 
 
 class Dither(Record, frozen=True):
-    """The table [dither]: a tremor that makes l and psi swing by +-l [m] and +-psi [rad], f [Hz] times a second."""
+    """The table [dither]: a tremor that makes l and psi swing by +-l [m] and +-psi [rad] at f [Hz]."""
 
     l: float = 0.0
     psi: float = 0.0
@@ -123,7 +123,7 @@ class Scenario(Record, frozen=True):
         return max(1, round(self.duration / self.dt))
 
     def command_at(self, t: float) -> tuple[float, float]:
-        """Return (v_c, w_c) that hold at `t` [s], zero before the first segment, and the tremor on top of them."""
+        """Return the (v_c, w_c) in force at `t` [s], zero before the first segment, plus the tremor."""
         k = bisect.bisect_right(self.segments, t + 1e-9 * self.dt, key=lambda segment: segment.t) - 1
         v_c, w_c = (self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else (0.0, 0.0)
         if self.dither.l == 0.0 and self.dither.psi == 0.0:
@@ -260,7 +260,7 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
     )
     s_x, s_y = robot.shoulder or (given.mount.s_x, given.mount.s_y)
     mount = Mount(s_x, s_y, given.mount.yaw if robot.mount_yaw is None else robot.mount_yaw)
-    model = placed(given, mount, workspace)
+    model = given.placed(mount, workspace)
     check_workspace(model, workspace)
     start_l = given.start.l if robot.l is None else robot.l
     start_psi = given.start.psi if robot.psi is None else robot.psi

@@ -3,50 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import cos
 from typing import Any, NamedTuple
 
-from overreach.arm.polar import hand_in_world
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
-from overreach.law.authority import ee_velocity
 from overreach.law.body import WholeBody
-from overreach.law.frame import FRAMES, axes, meant, of_two
+from overreach.law.frame import of_two
 from overreach.plugs import load_law
 from overreach.requests import ArmRequest
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.law_alone import PilotAlone
+from overreach.run.row import Row, row_of
 from overreach.run.scenario import Scenario, load_scenario
 from overreach.run.summary import Summary, summarise
 from overreach.types import Command, RobotState
 from overreach.verdicts import Verdict
 
 OPERATOR = 1
-"""Who drives a scenario."""
-
-
-class Row(NamedTuple):
-    """One line of the CSV: the state at t, and the rates applied from t to t + dt. theta: joints, a column each."""
-
-    t: float
-    v_c: float
-    w_c: float
-    l: float
-    psi: float
-    theta_e: float
-    mu: float
-    sigma: float
-    v_b: float
-    v_bm: float
-    v_m: float
-    w_b: float
-    w_m: float
-    x_b: float
-    y_b: float
-    theta_b: float
-    x_e: float
-    y_e: float
-    theta: tuple[float, ...]
+"""The operator's number in a scenario."""
 
 
 class Run(NamedTuple):
@@ -66,7 +40,7 @@ class Run(NamedTuple):
 
 
 def law_of(scenario: Scenario, name: str, changes: Mapping[str, Any] | None = None) -> WholeBody:
-    """Return the law called `name` with the parameters and the blend of `scenario`, and `changes` of them."""
+    """Return the law called `name` with the parameters and the blend of `scenario`, overridden by `changes`."""
     return load_law(name, {**scenario.parameters.get(name, {}), **(changes or {})}, scenario.blend)
 
 
@@ -78,7 +52,7 @@ def pilot_for(scenario: Scenario, law: WholeBody) -> Pilot:
 
 
 def ticks(scenario: Scenario, law: WholeBody, pilot: Pilot | None = None) -> Iterator[tuple[Tick, RobotState]]:
-    """Yield (tick, what truly happens from then on) tick by tick, in constant memory: a drive with a held dead-man."""
+    """Yield (tick, true state with the rates from then on), in constant memory: a drive with the dead-man held."""
     pilot = pilot or pilot_for(scenario, law)
     robot = KinematicRobot(scenario.model, scenario.imperfection, scenario.l, scenario.psi)
     frame = scenario.frame or law.frame
@@ -89,28 +63,6 @@ def ticks(scenario: Scenario, law: WholeBody, pilot: Pilot | None = None) -> Ite
         tick = pilot.tick(robot.read(t), command, t, scenario.dt)
         robot.write(tick.base, tick.joints, tick.gripper, t, t + scenario.dt)
         yield tick, robot.true
-
-
-def row_of(tick: Tick, true: RobotState, scenario: Scenario) -> tuple[Row, tuple[float, float]]:
-    """Return the row of a tick, and the EE's velocity error (radial, tangential) [m/s], where the hand truly is."""
-    model, twist, frame, split = scenario.model, tick.gated.twist, tick.gated.frame, tick.split
-    chain = model.arm.at(true.q, model.mount)
-    l, psi, theta_e = chain.l, chain.psi, tick.polar.theta_e
-    x_b, y_b, theta_b, v_b, w_b = true.x_b, true.y_b, true.theta_b, true.v_b, true.w_b
-    v_m, w_m = split.v_m, split.w_m
-    if not scenario.imperfection.ideal:
-        v_m, w_m, *_ = chain.moved(true.dq)
-    psi_d = psi + model.mount.yaw
-    u = meant(FRAMES[frame], twist, l, psi_d, theta_b, theta_e)
-    e_r, e_t = ee_velocity(l, psi, v_b, w_b, v_m, w_m, model.mount.three)
-    x_e, y_e = hand_in_world(x_b, y_b, theta_b, l, psi_d, model.mount.s_x, model.mount.s_y)
-    v_c, w_c = [getattr(twist, name) for name in axes(frame)]
-    row = Row(
-        t=tick.now, v_c=v_c, w_c=w_c, l=l, psi=psi, theta_e=theta_e, mu=split.mu, sigma=split.sigma,
-        v_b=v_b, v_bm=v_b * cos(psi_d), v_m=v_m, w_b=w_b, w_m=w_m,
-        x_b=x_b, y_b=y_b, theta_b=theta_b, x_e=x_e, y_e=y_e, theta=true.q,
-    )  # fmt: skip
-    return row, (e_r - u.u_r, e_t - u.u_t)
 
 
 def simulate(scenario: Scenario | str, law: WholeBody | str = "exact") -> Run:

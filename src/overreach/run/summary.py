@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from overreach.law.blend import Step
 from overreach.law.body import WholeBody
 from overreach.model.model import channels
 from overreach.run import metrics
+from overreach.run.row import Row
+from overreach.run.scenario import Scenario
 from overreach.types import Record
 from overreach.verdicts import Verdict
-
-if TYPE_CHECKING:
-    from overreach.run.scenario import Scenario
-    from overreach.run.simulate import Row
 
 
 class Summary(Record, frozen=True):
@@ -127,7 +124,7 @@ LINES: tuple[tuple[str, str, str], ...] = (
 
 
 def _shown(value: float) -> str:
-    """Return four figures, and 0 for what is rounding."""
+    """Return `value` to four figures, and 0 for a rounding error."""
     return "0" if abs(value) < 1e-12 else f"{value:.4g}"
 
 

@@ -1,4 +1,4 @@
-"""What every law must keep to. In a test of your own: `check_law(MyLaw(), my_model())`."""
+"""What every law must satisfy. In a test of your own: `check_law(MyLaw(), my_model())`."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from overreach.verdicts import Verdict
 
 RATES = ("v_b", "w_b", "v_m", "w_m")
 EXACT_TO = 1e-9
-"""How exact [m/s] a law must be that says it closes the residual, at commands up to 0.4 m/s."""
+"""How exact [m/s] a law that says it closes the residual must be, for commands up to 0.4 m/s."""
 
 
 def check_law(law: Law, model: Model, seed: int = 0, cases: int = 500) -> None:
     """Raise AssertionError, with the case, where `law`, bound to `model`, breaks a promise; `cases` random states.
 
-    Checked: it has all that the Protocol names; every split is finite, with shares and scale in [0, 1], anywhere and
-    for any finite command; no command gives no motion; the same arguments give the same answer, whatever was asked
-    between; no solution means zero; and where it says that it closes the residual, the hand moves as commanded, times
+    Checked: it has all that `Law` names; every split is finite, with shares and scale in [0, 1], anywhere and
+    for any finite command; a zero command gives no motion; the same arguments give the same answer, whatever was asked
+    in between; no solution means zero; and if it says that it closes the residual, the hand moves as commanded, times
     the scale.
     """
     missing = [name for name in ("name", "frame", "closes_residual", "bind") if not hasattr(law, name)]

@@ -1,4 +1,4 @@
-"""What every robot must keep to, real or simulated. In a test of your own: `check_robot(lambda now: MyRobot(now))`."""
+"""What every robot must satisfy, real or simulated. In a test of your own: `check_robot(lambda now: MyRobot(now))`."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from overreach.robots.base import Robot
 from overreach.types import BaseTwist, RobotState
 
 PERIOD = 0.01
-"""Robots are read and written every so many s."""
+"""Robots are read and written with this period [s]."""
 PART = 0.1
-"""Each channel is asked for this part of its greatest rate."""
+"""Each channel is asked for this fraction of its greatest rate."""
 SETTLES_S = 1.0
-"""A rate that is asked for is there, and one that is not is gone, after this long [s] ..."""
+"""After this long [s], a rate that is asked for is reached, and one that is not has come to zero ..."""
 TOLERANCE = 0.3
-"""... to this part of what was asked for."""
+"""... to within this fraction of what was asked for."""
 STILL = 1e-3
 """A robot at rest moves by no more than this [m/s, rad/s]."""
 UNIT = 1e-3
-"""How near the length of the attitude's quaternion is to 1."""
+"""How close the length of the attitude's quaternion must be to 1."""
 
 
 def check_robot(
     make: Callable[[float], Robot], clock: Clock | None = None, period: float = PERIOD, settles_s: float = SETTLES_S
 ) -> None:
-    """Raise AssertionError where a robot that `make(now)` gives breaks a promise. It moves, each channel by itself.
+    """Raise AssertionError if a robot from `make(now)` breaks a promise. The robot moves, one channel at a time.
 
-    clock: a real one for a robot that lives in real time, else time is stepped. Checked: it has all that the Protocol
+    clock: a real one for a robot that runs in real time; else time is stepped. Checked: it has all that the Protocol
     names; states have the model's joints, finite numbers in Python's own floats, a unit quaternion, and a stamp that is
-    not ahead and goes on; at first it is at rest; each channel that is asked for moves, the others do not, and its
-    position goes the way of its rate; what is asked for holds until it is asked for otherwise; `stop` is rest; and a
+    not ahead and that advances; at first it is at rest; each channel that is asked for moves, the others do not, and
+    its position follows the sign of its rate; a request holds until the next one; `stop` brings it to rest; and a
     simulated robot goes back to its start.
     """
     clock = clock or SteppedClock(1000.0)
@@ -53,7 +53,7 @@ def check_robot(
             _check_rates(last, wanted, [one.name for one in each])
             way = _positions(last)[k] - begin
             assert way * sign > 0.0, f"{channel.moves} goes the wrong way: {way:+.3g} at {wanted[k]:+.3g}"
-            # What was asked for holds: half of the time again, without a word.
+            # A request holds: for one more period nothing is written.
             clock.sleep_until(clock.now() + period)
             last = _read(robot, clock, last)
             _check_rates(last, wanted, [one.name for one in each])
@@ -88,7 +88,7 @@ def _read(robot: Robot, clock: Clock, before: RobotState | None) -> RobotState:
 
 
 def _positions(state: RobotState) -> tuple[float, ...]:
-    """Return what each channel moves; of the base's place, how far it lies along its heading."""
+    """Return what each channel moves; for the base's place, its distance along the heading."""
     pose = state.pose
     along = pose.x * math.cos(pose.yaw) + pose.y * math.sin(pose.yaw)
     return along, pose.yaw, *state.q

@@ -1,4 +1,4 @@
-"""What everything that plans for the whole body must keep to. In a test: `check_whole_body(MyBody(), my_model())`."""
+"""What everything that plans for the whole body must satisfy. In a test: `check_whole_body(MyBody(), my_model())`."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from overreach.verdicts import Verdict
 
 RATES = ("v_b", "w_b", "v_m", "w_m")
 SAME = 1e-9
-"""How exactly [m/s, rad/s] the polar rates of a plan must be those of its joint rates ..."""
+"""How closely [m/s, rad/s] the polar rates of a plan must match those of its joint rates ..."""
 EXACT_TO = 1e-9
-"""... and the hand's velocity what is commanded, where the plan says that it closes the residual."""
+"""... and the hand's velocity its command, if the whole body says that it closes the residual."""
 SPEED = 0.4
-"""Commands are up to so many m/s and rad/s."""
+"""Commands go up to this speed [m/s, rad/s]."""
 
 
 def check_whole_body(body: WholeBody, model: Model, seed: int = 0, cases: int = 300) -> None:
     """Raise AssertionError, with the case, where `body` breaks a promise; `cases` random states of `model`.
 
-    Checked: it has all that the Protocol names; every plan is finite, with shares and scale in [0, 1], wherever the arm
-    can be, whatever the base does; no command gives no motion; a plan's polar rates are those of its joint rates; the
-    same question gives the same answer, whatever was asked between; no solution means zero; and where it says that it
-    closes the residual, the hand moves as commanded, times the scale.
+    Checked: it has all that `WholeBody` names; every plan is finite, with shares and scale in [0, 1], wherever the arm
+    can be and whatever the base does; a zero command gives no motion; a plan's polar rates are those of its joint
+    rates; the same question gives the same answer, whatever was asked in between; no solution means zero; and if it
+    says that it closes the residual, the hand moves as commanded, times the scale.
     """
     missing = [name for name in ("name", "frame", "closes_residual", "planner") if not hasattr(body, name)]
     assert not missing, f"whole body lacks {', '.join(missing)}"

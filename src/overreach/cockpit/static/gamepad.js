@@ -1,6 +1,6 @@
 // The Gamepad API's standard mapping: left stick drives, B or Circle stops, Start arms.
-// A stick that springs back is its own dead-man: off its centre is held, at its centre is released. After any
-// release, and at the start, it must be seen at its centre before it counts again, and it takes hold from nobody.
+// A self-centring stick is its own dead-man: off centre it is held, at centre it is released. After any release, and
+// at the start, it must be seen at its centre before it counts again, and it takes the hold from no other input.
 
 const CENTRE = 0.15;
 const HOLD = 0.08; // once held, released only nearer to the centre

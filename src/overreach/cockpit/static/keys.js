@@ -36,7 +36,7 @@ export function attachKeys(stick, buttons) {
       event.preventDefault();
       return buttons.stop();
     }
-    // While Ctrl, Alt or Meta is down some systems never tell that other keys are let go: let go of all.
+    // While Ctrl, Alt or Meta is down some systems never report that other keys are released: release all.
     if (event.ctrlKey || event.metaKey || event.altKey) return letGo();
     if (elsewhere(event.target)) return;
     if (event.key === "Shift") {
@@ -67,6 +67,6 @@ export function attachKeys(stick, buttons) {
   });
   for (const event of ["blur", "pagehide", "offline", "contextmenu"]) window.addEventListener(event, letGo);
   document.addEventListener("visibilitychange", () => document.hidden && letGo());
-  // Whoever else ends the hold ends it for the keys that are down, too.
+  // If anything else ends the hold, it ends for the keys that are down, too.
   stick.listeners.push(() => stick.held || down.clear());
 }

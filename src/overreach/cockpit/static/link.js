@@ -1,4 +1,4 @@
-// The WebSocket to the cockpit. Newest state in, commands and questions out; comes back by itself.
+// The WebSocket to the cockpit. Newest state in, commands and questions out; reconnects by itself.
 
 const AGAIN_MS = 400;
 const ANSWER_MS = 1500;

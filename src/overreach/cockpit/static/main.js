@@ -10,7 +10,7 @@ import { Stick } from "./stick.js";
 import { toggleTheme } from "./theme.js";
 import { View } from "./view.js";
 
-const SILENT_MS = 500; // without a state for this long, the robot side is not there
+const SILENT_MS = 500; // without a state for this long, the robot side counts as silent
 const STOP_AGAIN_MS = 150;
 
 const $ = (id) => document.getElementById(id);
@@ -64,7 +64,7 @@ function configure(settings, scene) {
 }
 
 view.afterDraw.push((state) => {
-  if (!state || !link.ready || silent()) return; // an old state that is drawn again is no news
+  if (!state || !link.ready || silent()) return; // an old state drawn again is not news
   panel.show(state, link.operator);
   stick.seen = state.t;
   page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
@@ -80,7 +80,7 @@ async function ask(what) {
   return answer;
 }
 const buttons = {
-  // A stop is asked for until the robot side has said that it is done, over lost connections too.
+  // A stop is asked for again until the robot side confirms it, across lost connections too.
   async stop() {
     stick.release();
     if (page.stopping) return;

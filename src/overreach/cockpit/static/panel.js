@@ -58,7 +58,7 @@ export class Panel {
     put($("pad-hint"), hint);
   }
 
-  // The numbers are for reading: a few times a second is enough, and spares the frames a layout.
+  // The numbers are for reading: a few updates a second are enough, and spare most frames a layout.
   numbers(s) {
     const [x, y] = s.hand;
     put($("r-hand"), `${signed(x)}, ${signed(y)} m`);
@@ -68,7 +68,7 @@ export class Panel {
     put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
   }
 
-  // Something that the next state must not wipe away.
+  // A message that the next state must not overwrite.
   tell(word, reason) {
     this.until = performance.now() + TOLD_MS;
     this.say("warn", word, reason);
@@ -79,7 +79,7 @@ export class Panel {
     put($("verdict-word"), word);
     if ($("verdict-reason").textContent === reason) return;
     put($("verdict-reason"), reason);
-    $("verdict").title = reason; // whole, where the window is too narrow for it
+    $("verdict").title = reason; // in full, for when the window is too narrow for it
   }
 
   down(reason) {

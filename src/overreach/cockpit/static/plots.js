@@ -41,7 +41,7 @@ export class Plots {
     for (const plot of this.plots) plot.add(state);
   }
 
-  // Called when a frame has just been drawn: as far from the next one as can be.
+  // Called right after a frame is drawn: as long before the next one as possible.
   afterFrame(at, held) {
     if (at - this.turn < (held ? TURN_HELD_MS : TURN_MS)) return;
     this.turn = at;

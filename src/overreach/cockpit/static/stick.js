@@ -1,12 +1,12 @@
-// One stick from many inputs (pad, keys, gamepad). Whoever took hold last has it, until letting go.
-// Held: a heartbeat, so that silence means loss. Let go: zero, said three times.
+// One stick from many inputs (pad, keys, gamepad). The input that took hold last keeps it until it lets go.
+// While held it sends a heartbeat, so that silence means loss. On release it sends zero three times.
 
 const HEARTBEAT_MS = 33;
 
 export class Stick {
   constructor(link) {
     this.link = link;
-    this.frame = "hand"; // what the two axes mean goes with every message
+    this.frame = "hand"; // sent with every message: what the two axes mean
     this.axes = ["v_x", "w_z"]; // forward, leftward: parts of the twist in that frame
     this.most = { v_x: 0, v_y: 0, w_z: 0 }; // at full deflection
     this.seen = 0; // time of the newest state that this page has shown

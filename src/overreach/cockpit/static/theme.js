@@ -1,4 +1,4 @@
-// Light, dark, or as the system has it. Colours are read from the style sheet, so that they stand in one place.
+// Light, dark, or as the system prefers. Colours are read from the style sheet, so that they are set in one place.
 
 const system = matchMedia("(prefers-color-scheme: dark)");
 const listeners = [];

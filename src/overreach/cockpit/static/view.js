@@ -17,7 +17,7 @@ export class View {
     this.trails = { hand: [], base: [] };
     this.dirty = true;
     this.afterDraw = []; // called with the state that was drawn
-    this.afterFrame = []; // called in every frame, when what there was to draw is drawn
+    this.afterFrame = []; // called in every frame, after any drawing
     this.colours();
     onTheme(() => this.colours());
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -284,7 +284,7 @@ export class View {
     g.strokeStyle = this.c.base;
     g.lineWidth = 2;
     g.stroke();
-    g.beginPath(); // which way it looks
+    g.beginPath(); // which way it faces
     g.moveTo(length * 0.44, 0);
     g.lineTo(length * 0.31, -width * 0.13);
     g.lineTo(length * 0.31, width * 0.13);
