@@ -243,13 +243,16 @@ class RobotState(Record, frozen=True):
 
     @property
     def plain(self) -> RobotState:
-        """The same state in Python's own floats: drivers often report numpy's. Raises if a value is not a number."""
-        if set(map(type, (*self.numbers, *self.q, *self.dq))) == FLOATS and type(self.q) is type(self.dq) is tuple:
+        """The same state in Python's own floats, with the heading filled in. Raises if a value is not a number."""
+        own = set(map(type, (*self.numbers, *self.q, *self.dq))) == FLOATS and type(self.q) is type(self.dq) is tuple
+        if own and self.pose.heading is not None:
             return self
         t, *numbers = [float(number + 0.0) for number in self.numbers]  # raises for a text
         *numbers, gripper, base, joints, delay = numbers
         q, dq = [tuple([float(number + 0.0) for number in one]) for one in (self.q, self.dq)]
-        return RobotState(t, Pose(*numbers[:-6]), Twist(*numbers[-6:]), q, dq, gripper, (base, joints), delay)
+        pose = Pose(*numbers[:-6])
+        pose = pose if pose.heading is not None else msgspec.structs.replace(pose, heading=pose.yaw)
+        return RobotState(t, pose, Twist(*numbers[-6:]), q, dq, gripper, (base, joints), delay)
 
 
 class Decision(Record, frozen=True):

@@ -62,7 +62,7 @@ class HandController:
         if model.mount != self.model.mount or len(model.arm.channels) != len(self._still):
             raise SetupError("a law is changed for the same robot: its mount and its joints stay as they are")
         name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
-        self.model = model
+        self.model, self._lags = model, model.base.lag > 0.0
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
 
     def restart(self) -> None:
@@ -89,9 +89,8 @@ class HandController:
         return self._located(self._arm.at(state.q, self.model.mount), state)
 
     def _located(self, chain: Chain, state: RobotState) -> PolarState:
-        bearing = state.pose.yaw + chain.psi + self._mount[2]
-        if self._theta_e is None or heading_rate(self.frame, 0.0) is None:
-            self._theta_e = bearing
+        if self._theta_e is None or self.frame is not Frame.HAND:  # in the others it follows r
+            self._theta_e = state.pose.yaw + chain.psi + self._mount[2]
         return PolarState(chain.l, chain.psi, self._theta_e)
 
     def decide(
@@ -158,17 +157,18 @@ class HandController:
                 return
             state = self._believed
         self._now = now if now is not None else state.t if state.t > stamp else self._now + dt
-        numbers = state.numbers
-        if set(map(type, (*numbers, *state.q, *state.dq))) != FLOATS or not type(state.q) is type(state.dq) is tuple:
-            state = state.plain  # drivers like to report numbers of numpy, or a list that they fill again and again
+        pose, motion, q, dq = astuple(state.pose), astuple(state.motion), state.q, state.dq
+        numbers = (state.t, *pose, *motion, state.gripper, *state.ages, state.delay)
+        if set(map(type, (*numbers, *q, *dq))) != FLOATS or not type(q) is type(dq) is tuple:
+            # Drivers like to report a quaternion alone, numbers of numpy, or a list that they fill again and again.
+            state = state.plain
+            pose, motion, q, dq = astuple(state.pose), astuple(state.motion), state.q, state.dq
             numbers = state.numbers
-        pose, motion = state.pose, state.motion
-        positions = (complex(pose.x, pose.y), pose.yaw, *state.q)
-        wrong = self._feedback.check(state.t, positions, (motion.v_x, motion.w_z, *state.dq), self._now)
+        x, y, _, q_w, q_x, q_y, q_z, yaw = pose
+        wrong = self._feedback.check(state.t, (complex(x, y), yaw, *q), (motion[0], motion[5], *dq), self._now)
         if not wrong and not isfinite(sum(numbers)):
             wrong = "The robot's feedback of the base is not finite."
-        size = pose.q_w * pose.q_w + pose.q_x * pose.q_x + pose.q_y * pose.q_y + pose.q_z * pose.q_z
-        if not wrong and not -UNIT <= size - 1.0 <= UNIT:
+        elif not wrong and not -UNIT <= q_w * q_w + q_x * q_x + q_y * q_y + q_z * q_z - 1.0 <= UNIT:
             wrong = "The robot's feedback of the base's attitude is no unit quaternion."
         if wrong:
             self.guard.latch(wrong)
@@ -196,7 +196,7 @@ class HandController:
         if closes:
             then = self._feedback.asked.in_force
             slip_v, slip_w = is_.v_x - then[0], is_.w_z - then[1]
-        open_ = closes and (slip_v != 0.0 or slip_w != 0.0 or self.model.base.lag > 0.0)
+        open_ = closes and (slip_v != 0.0 or slip_w != 0.0 or self._lags)
         owed = self._still
         if open_:
             v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, v_b + slip_v, w_b + slip_w, mount)

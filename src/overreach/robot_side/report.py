@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import cos, inf, sin
 from typing import final
 
-import msgspec
-
 from overreach.arm.chain import Chain, Point
 from overreach.arm.mount import Mount
 from overreach.control.pilot import Pilot
@@ -16,7 +14,6 @@ from overreach.robot_side.timing import Lateness
 from overreach.types import BaseTwist, Pose
 
 LATE_EVERY_S = 1.0
-_with = msgspec.structs.replace
 
 
 @final
@@ -62,7 +59,7 @@ class Reporter:
             v_m=split.v_m,
             w_m=split.w_m,
             base=tick.base,
-            pose=_with(state.pose, heading=state.pose.yaw),
+            pose=state.pose,
             joints=state.q,
             hand=in_world(state.pose, chain.hand),
             velocity=velocity(state.pose, chain, tick.base, split.v_m, split.w_m, model.mount),

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from overreach.clock import Clock, SteppedClock
 from overreach.model.model import channels
 from overreach.robots.base import Robot
-from overreach.types import BaseTwist, RobotState
+from overreach.types import FLOATS, BaseTwist, RobotState
 
 PERIOD = 0.01
 """Robots are read and written with this period [s]."""
@@ -76,7 +76,8 @@ def _read(robot: Robot, clock: Clock, before: RobotState | None) -> RobotState:
     state = robot.read(now)
     n = len(robot.model.arm.channels)
     assert len(state.q) == len(state.dq) == n, f"reports {len(state.q)} joints and {len(state.dq)} rates, has {n}"
-    assert state.plain is state, f"reports numbers that are not Python's own floats: {state}"
+    own = set(map(type, (*state.numbers, *state.q, *state.dq))) == FLOATS and type(state.q) is type(state.dq) is tuple
+    assert own, f"reports numbers that are not Python's own floats, in tuples: {state}"
     assert all(map(math.isfinite, (*state.numbers, *state.q, *state.dq))), f"reports what is not finite: {state}"
     pose = state.pose
     length = math.hypot(pose.q_w, pose.q_x, pose.q_y, pose.q_z)
