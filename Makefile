@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # Tests on real time have the machine to themselves; the others run side by side.
-REAL_TIME := tests/browser tests/faults tests/link tests/test_loop.py
+REAL_TIME := tests/browser tests/faults tests/link
 
 .PHONY: drive reproduce test venv lint types bench mutate browser headline clean
 

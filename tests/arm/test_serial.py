@@ -71,7 +71,7 @@ def hand_velocity(tick: Tick, model: Any) -> Any:
 @pytest.mark.parametrize("scenario", [name for name in sorted(builtin_scenarios()) if "dither" not in name])
 def test_the_hand_moves_as_commanded_in_six_components(arm: Callable[..., SerialArm], scenario: str) -> None:
     """The same scenarios, the unchanged law: J(q) dq + carried(base) = s u to 1e-6 in all six components."""
-    given = on(scenario, arm(whole=False), 5.0)
+    given = on(scenario, arm(whole=False), 4.0)
     moved = carried = 0.0
     for tick, _ in ticks(given, law_of(given, "exact")):
         u = np.array(msgspec.structs.astuple(tick.decided.u))

@@ -6,7 +6,9 @@ import itertools
 import math
 import random
 from collections.abc import Callable
+from typing import Any
 
+import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,7 +16,7 @@ from hypothesis import strategies as st
 from overreach.errors import SetupError
 from overreach.gate.gate import LOST_S, STALE_S, Gate
 from overreach.gate.limits import Limits
-from overreach.types import Command
+from overreach.types import Command, Frame, Twist
 from overreach.verdicts import Motion, Verdict
 from tests.said import said
 
@@ -564,3 +566,147 @@ def test_no_way_from_stopped_to_moving_but_reset_arm_release_press() -> None:
             assert not went or may == "moving", sequence
             moved += went
     assert moved > 100
+
+
+def asks(bench: Bench, frame: Frame = Frame.HAND, grip: int | None = None, **parts: Any) -> Command:
+    """Return a command of these parts of a twist, or of the gripper."""
+    bench.seq += 1
+    gripper = parts.pop("gripper", None)
+    twist, press = Twist(**parts), bench.grip if grip is None else grip
+    return Command(ME, bench.seq, press, True, twist, frame, gripper, seen=parts.get("v_x", 0.0) + 7.0)
+
+
+def test_a_frame_is_taken_at_rest() -> None:
+    """At rest, also within a hold, another frame is taken with its command; what is said then is its."""
+    bench = Bench(50.0)
+    bench.arm()
+    bench.press()
+    for frame in (Frame.WORLD, Frame.BASE, Frame.HAND):
+        bench.gate.accept(asks(bench, frame), bench.now)
+        gated = bench.gate.tick(bench.now, DT)
+        assert (gated.frame, gated.verdict, gated.twist) == (frame, Verdict.MOVING, Twist())
+    bench.gate.accept(asks(bench, Frame.BASE, v_y=0.2), bench.now)
+    gated = bench.gate.tick(bench.now, DT)
+    assert gated.frame is Frame.BASE
+    assert gated.twist == Twist(v_y=2.5 * DT)
+
+
+def test_a_frame_is_not_changed_in_motion() -> None:
+    """In motion a command in another frame ramps down in the old one, REGRIP; the press is spent, a new one drives."""
+    bench = moving(50.0)
+    for _ in range(100):
+        bench.gate.accept(asks(bench, Frame.WORLD, v_y=0.3), bench.now)
+        gated = bench.gate.tick(bench.now, DT)
+        bench.now += DT
+        assert gated.verdict is Verdict.REGRIP
+        assert gated.twist.v_y == 0.0
+        assert gated.frame is Frame.HAND or gated.motion is Motion.NONE
+    assert bench.gate.latch.spent_grip == bench.grip
+    assert bench.gate.resting
+    bench.press()
+    bench.gate.accept(asks(bench, Frame.WORLD, v_y=0.3), bench.now)
+    gated = bench.gate.tick(bench.now, DT)
+    assert (gated.frame, gated.twist) == (Frame.WORLD, Twist(v_y=2.5 * DT))
+
+
+LACKED = ("v_z", "w_x", "w_y", "gripper")
+
+
+@pytest.mark.parametrize("part", LACKED)
+def test_what_a_robot_lacks_is_refused(part: str) -> None:
+    """A part of a twist, or a gripper, that is not there: the whole command counts as rest, and the part is named."""
+    bench = moving(50.0)
+    seq = bench.gate.seq
+    parts: dict[str, Any] = {"v_x": 0.4, part: 0.05}
+    said = asks(bench, **parts)
+    assert bench.gate.accept(said, bench.now) is Verdict.NO_SUCH_MOTION
+    assert (bench.gate.refused, bench.gate.seq) == (1, seq + 1)
+    gated = bench.gate.tick(bench.now, DT)
+    assert (gated.verdict, gated.reason) == (Verdict.NO_SUCH_MOTION, f"It has no {part}.")
+    assert gated.twist.v_x == pytest.approx(0.4 - 2.5 * DT)
+    assert (gated.motion, gated.gripper) == (Motion.RAMPING, None)
+    for _ in range(40):
+        gated = bench.gate.tick(bench.now, DT)
+    assert gated.motion is Motion.NONE
+    assert bench.gate.accept(asks(bench, v_x=0.1, v_z=-1e-9, w_x=0.1), bench.now) is Verdict.NO_SUCH_MOTION
+    assert bench.gate.tick(bench.now, DT).reason == "It has no v_z, w_x."
+
+
+def test_what_is_refused_once_is_refused_again() -> None:
+    """A command for what the robot lacks is refused each time it comes, and a good one is taken again."""
+    bench = moving(50.0)
+    for _ in range(3):
+        assert bench.gate.accept(asks(bench, v_x=0.4, v_z=0.05), bench.now) is Verdict.NO_SUCH_MOTION
+        bench.gate.tick(bench.now, DT)
+    assert bench.gate.refused == 3
+    assert bench.gate.accept(asks(bench, v_x=0.2), bench.now) is None
+    bench.now += 0.6
+    bench.gate.accept(asks(bench, v_x=0.2), bench.now)
+    gated = bench.gate.tick(bench.now, DT)
+    assert (gated.verdict, gated.reason) == (Verdict.ACCELERATION, "")
+
+
+def test_a_robot_that_has_more_obeys_more() -> None:
+    """Where the robot has them, every part of a twist and the gripper, from 0 to 1, come through."""
+    gate = Gate(obeys=frozenset(("v_x", "v_y", "v_z", "w_x", "w_y", "w_z", "gripper")))
+    gate.arm(ME, 0, 50.0)
+    twist = Twist(0.1, 0.1, 0.05, 0.1, 0.1, 0.1)
+    for seq, opening in enumerate((0.0, 0.3, 1.0, None), start=1):
+        assert gate.accept(Command(ME, seq, 1, True, twist, gripper=opening), 50.0) is None
+        for _ in range(40):
+            gated = gate.tick(50.0, DT)
+        assert (gated.twist, gated.gripper) == (twist, opening)
+    for seq, opening in enumerate((-1e-9, 1.0 + 1e-9), start=10):
+        assert gate.accept(Command(ME, seq, 1, True, twist, gripper=opening), 50.0) is Verdict.NO_SUCH_MOTION
+        gated = gate.tick(50.0, DT)
+        assert (gated.gripper, gated.reason) == (None, "It has no gripper's opening but 0 to 1.")
+    gate.accept(Command(ME, 20, 1, False, twist, gripper=0.5), 50.0)
+    assert gate.tick(50.0, DT).gripper is None  # nobody holds
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_every_number_of_a_command_is_finite(bad: float) -> None:
+    """Each part of a twist, the gripper and the echo: not finite is refused, and nothing of the message is taken."""
+    for field in (*Twist.__struct_fields__, "gripper", "seen"):
+        gate = Gate(obeys=frozenset(("v_x", "v_y", "v_z", "w_x", "w_y", "w_z", "gripper")))
+        gate.arm(ME, 0, 50.0)
+        good = Command(ME, 1, 1, True, gripper=0.5)
+        within_twist = field in Twist.__struct_fields__
+        wrong = {"twist": Twist(**{field: bad})} if within_twist else {field: bad}
+        assert gate.accept(msgspec.structs.replace(good, **wrong), 50.0) is Verdict.NOT_FINITE
+        assert gate.seq == 0
+
+
+def test_what_the_operator_saw_is_kept() -> None:
+    """The echo of the last accepted command is kept; before the first it is 0."""
+    bench = Bench(50.0)
+    assert bench.gate.seen == 0.0
+    bench.arm()
+    bench.press()
+    bench.gate.accept(asks(bench, v_x=0.1), bench.now)
+    assert bench.gate.seen == pytest.approx(7.1)
+    bench.gate.accept(Command(ME, bench.seq, 1, True, seen=99.0), bench.now)  # a repeated one
+    assert bench.gate.seen == pytest.approx(7.1)
+
+
+def test_the_speed_scale_scales_every_part() -> None:
+    """At half the speed scale the same stick means half, in every part; a change of it is used at once."""
+    bench = Bench(50.0)
+    bench.arm()
+    bench.press()
+    for scale in (0.5, 0.25, 1.0):
+        bench.gate.set_speed_scale(scale)
+        for _ in range(100):
+            bench.gate.accept(asks(bench, v_x=0.2, w_z=-0.4), bench.now)
+            gated = bench.gate.tick(bench.now, DT)
+            bench.now += DT
+        assert gated.twist == Twist(v_x=0.2 * scale, w_z=-0.4 * scale)
+        assert gated.scale == 1.0
+    bench.gate.set_speed_scale(0.5)
+    for _ in range(100):
+        bench.gate.accept(asks(bench, v_x=1.6), bench.now)
+        gated = bench.gate.tick(bench.now, DT)
+        bench.now += DT
+    assert gated.twist.v_x == pytest.approx(0.4)
+    assert gated.scale == pytest.approx(0.5)
+    assert gated.verdict is Verdict.SPEED

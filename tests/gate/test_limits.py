@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from msgspec.structs import astuple
 
 from overreach.errors import SetupError
-from overreach.gate.limits import Limits, clamp_change, feasible_scale, limit_speed, slew
+from overreach.gate.limits import Limits, clamp_change, feasible_scale, limit_speed, slew, within
 from overreach.types import Twist
 from overreach.verdicts import Verdict
 
@@ -267,3 +267,20 @@ def test_clamp_by_hand(change: float) -> None:
     assert clamp_change(2.0, 0.5, change) == 0.5 + change
     assert clamp_change(-2.0, 0.5, change) == 0.5 - change
     assert clamp_change(0.5, 0.5, change) == 0.5
+
+
+def test_within_says_what_needs_no_limit() -> None:
+    """At its limits of speed and change a rate is within them, beyond either, up or down, it is not; nor is nan."""
+    most, change, was = (1.0, 2.0), (0.25, 0.5), (0.75, -1.5)
+    for rates in ((1.0, -2.0), (0.5, -1.0), (0.75, -1.5), (1.0, -1.0)):
+        assert within(rates, was, most, change)
+        assert within(tuple(-rate for rate in rates), tuple(-rate for rate in was), most, change)
+    more = 1e-9
+    for rates in ((1.0 + more, -1.5), (0.5 - more, -1.5), (0.75, -2.0 - more), (0.75, -1.0 + more), (math.nan, -1.5)):
+        assert not within(rates, was, most, change)
+        assert not within(tuple(-rate for rate in rates), tuple(-rate for rate in was), most, change)
+    assert not within((0.75, math.nan), was, most, change)
+    assert not within((1.5, 0.0), (1.5, 0.0), most, change)  # too fast, though it does not change
+    assert not within((0.0, 0.0), was, most, change)  # changed too much, though it is slow
+    with pytest.raises(ValueError, match="zip"):
+        within((0.75,), was, most, change)

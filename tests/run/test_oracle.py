@@ -180,6 +180,7 @@ def test_base_ends_behind_the_hand(v_c: float, shoulder: tuple[float, float], ya
         0.0,
         40.0,
         f'[robot]\npsi = 0.3\nshoulder = {list(shoulder)}\nmount_yaw = {yaw}\n[law]\nblend = "smoothstep"',
+        dt=0.002,
     )
     last = run(text).rows[-1]
     assert last.theta_b == pytest.approx(0.3 + yaw, abs=2e-3)

@@ -33,7 +33,7 @@ class Guard:
         self._changes = tuple(channel.change_max for channel in self.channels)
         self._mosts = tuple(channel.rate_max for channel in self.channels)
         self.stop_s = max(ramp_s, *(channel.rate_max / channel.change_max for channel in self.channels))
-        self._dt = 0.0
+        self._dt: float | None = None
         self._steps: tuple[float, ...] = ()
         self.fault = ""
         """Why the robot must stand still until `reset`; empty if there is no fault."""
