@@ -17,6 +17,8 @@ import pytest
 from overreach.arm.mount import Mount
 from overreach.arm.planar import Arm2R, Chain2R
 from overreach.clock import SteppedClock
+from overreach.control.pilot import Pilot, replay
+from overreach.control.tick import Tick
 from overreach.errors import SetupError
 from overreach.law.body import NO_SOLUTION
 from overreach.law.laws import Exact, Law, Share
@@ -383,21 +385,36 @@ def test_a_law_is_made_once_and_not_on_the_loops_thread(bench: Bench, monkeypatc
 
 
 def test_while_libraries_load_nobody_drives(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A press made while a slow law is loaded moves nothing, then or later: only release and a new press do."""
+    """A press made while a slow law is loaded moves nothing, then or later: only a new press does, whoever watches.
+
+    All of it is in the ticks: replayed, they are the same.
+    """
     loop, going = bench.loop, Future()  # type: ignore[var-annotated]
     monkeypatch.setattr(loop._builder, "begin", lambda *_: going)
     wanted = msgspec.structs.replace(loop.settings, law=Choice("holistic"))
     commands: list[Command | None] = []
     monkeypatch.setattr(loop._link, "newest_command", lambda: commands.pop() if commands else None)
+    begun, law, whole = bench.clock.now(), loop.pilot.controller.law, loop.pilot.tick
+    ticks: list[Tick] = []
+
+    def tick(*given: Any) -> Tick:
+        ticks.append(whole(*given))
+        return ticks[-1]
+
+    monkeypatch.setattr(loop.pilot, "tick", tick)
     loop._begin(ConfigureRequest(wanted), lambda answer: None)
     for k in range(300):
         if k == 100:
             going.set_result(build(loop.settings, loop._model))
-        commands.append(said(7, k + 1, 1 if k < 200 else 2, True, 0.4, 0.0))
+        mine = said(7, k + 1, 1 if k < 200 else 2, True, 0.4, 0.0)
+        commands.append(said(8, 1, 1000, True, 0.4, 0.0) if k == 50 else mine)
         loop.tick(bench.clock.now(), PERIOD)
         bench.clock.t += PERIOD
         moving = bench.driver.written[-1][2] != 0.0
         assert moving is (k >= 200)
+    again = Pilot(loop._model, law)
+    again.gate.arm(7, 0, begun)
+    assert list(replay(again, ticks)) == ticks
 
 
 @pytest.mark.parametrize("width", [1e-320, 1e-5, 0.01, 3e4, 1e300])

@@ -1,8 +1,10 @@
 """A plug is a name and parameters. TOML, command line, page, lists and reports all read one schema of them.
 
-class Mine(Law, frozen=True):
-name = "mine"
-gain: Annotated[float, number("gain of mine", "1/s", 0.0, 10.0)] = 2.0
+    class Mine(Law, frozen=True):
+        name = "mine"
+        gain: Annotated[float, number("gain of mine", "1/s", 0.0, 10.0)] = 2.0
+
+A field without a description can be set only from Python.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ def test_a_mistyped_setting_fails_at_set_up(name: str) -> None:
     if name != "quadprog":  # its one setting is a switch, and takes anything
         setting = next(key for key in caught.value.valid if "tol" in key or "eps" in key)
         with pytest.raises(SetupError, match=f"cannot use {setting} = 'wide'") as of_value:
-            qp(solver=name, **{setting: "wide"})  # type: ignore[arg-type]
+            PaperQP(name, settings={setting: "wide"})
         assert "\n" not in str(of_value.value)
 
 

@@ -1,7 +1,7 @@
 """The gate: every command passes it, every tick ends in one verdict. Pure: time comes in as `now`.
 
-Freshness is the command's age at the receiver. Ramp: decelerate to zero and stay armed. Disarm: ramp, and then only a
-release and a new press move the robot. What it reports passes `feedback`; what is written to it passes `guard`.
+Freshness is the command's age at the receiver. Ramp: decelerate to zero and stay armed. Disarm: ramp, and then only
+arming and a new press move the robot. What it reports passes `feedback`; what is written to it passes `guard`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _with = msgspec.structs.replace
 STALE_S = 0.2
 """Without a fresh command for this long [s], the command ramps to zero."""
 LOST_S = 1.0
-"""Without a fresh command for this long [s], the robot is disarmed."""
+"""Without a fresh command for this long [s], only a new press of the dead-man counts."""
 TOLD_S = 0.5
 """How long a refusal is shown [s], unless a verdict is weightier."""
 OPERATORS_KEPT = 64

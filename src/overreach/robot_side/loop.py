@@ -8,8 +8,6 @@ from concurrent.futures import Future
 from math import inf
 from typing import NamedTuple, final
 
-import msgspec
-
 from overreach import __version__
 from overreach.clock import Clock
 from overreach.control.pilot import Pilot
@@ -19,7 +17,6 @@ from overreach.link.messages import (
     PROTOCOL,
     Accepted,
     Answer,
-    AnyRequest,
     Choice,
     ConfigureRequest,
     Hello,
@@ -28,12 +25,12 @@ from overreach.link.messages import (
 )
 from overreach.link.robot_end import RobotEnd
 from overreach.plugs import law_plug
-from overreach.requests import RestartRequest
+from overreach.requests import ArmRequest, Request, RestartRequest
 from overreach.robot_side.report import Reporter
 from overreach.robot_side.settings import Builder, Built, build, usual
 from overreach.robot_side.welcome import Reception
 from overreach.robots.base import Robot
-from overreach.types import RobotState
+from overreach.types import Command, RobotState
 
 STATE_PERIOD_S = 1.0 / 60.0
 """A state is sent when a command is accepted, and at the latest this long [s] after the last one."""
@@ -117,9 +114,7 @@ class Loop:
         state = self._read(now)
         command = self._link.newest_command()
         if command is not None and self._building is not None and self._building.slow:
-            # Libraries that load make the loop late: meanwhile nobody drives, and a press made now does not count.
-            command = msgspec.structs.replace(command, held=False)
-            self.pilot.gate.latch.spend(command.grip)
+            self._spend(command, now)
         heard = self.pilot.gate.seq
         begun = self._clock.now()
         tick = self.pilot.tick(state, command, now, dt)
@@ -129,6 +124,12 @@ class Loop:
         accepted = command is not None and self.pilot.gate.seq == command.seq != heard
         if accepted or now - self._sent_at >= STATE_PERIOD_S:
             self._publish(tick)
+
+    def _spend(self, command: Command, now: float) -> None:
+        """Arm anew for who drives: while libraries load, which makes the loop late, a press does not count."""
+        latch = self.pilot.gate.latch
+        if latch.armed and latch.operator == command.operator:
+            self.pilot.ask(ArmRequest(command.operator, command.grip), now)
 
     def _read(self, now: float) -> RobotState | None:
         """Return what the robot reports; None, with the fault latched, where it raises."""
@@ -189,9 +190,7 @@ class Loop:
                 self.pilot.fail(f"The robot side met {told(error)}.")
                 answer(Refused(f"Fault: the robot side met {told(error)}."))
 
-    def _carry_out(self, request: AnyRequest, now: float) -> Answer:
-        if isinstance(request, ConfigureRequest):
-            raise TypeError("settings are built, not carried out")
+    def _carry_out(self, request: Request, now: float) -> Answer:
         if isinstance(request, RestartRequest) and not self._robot.simulated:
             return Refused("A real robot is not put back.")
         refusal = self.pilot.ask(request, now)
