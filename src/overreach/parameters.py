@@ -109,11 +109,6 @@ class Parameters(Record, frozen=True):
                 raise UnknownNameError(f"parameter of the {kind} {cls.name}", key, known)
         return cls(**{key: known[key].read(value) if key in known else value for key, value in given.items()})
 
-    @property
-    def values(self) -> dict[str, Value]:
-        """The parameters that the schema describes, by name."""
-        return {one.name: getattr(self, one.name) for one in schema(type(self))}
-
 
 @cache
 def schema(plug: type[Parameters]) -> tuple[Parameter, ...]:

@@ -23,12 +23,13 @@ BLENDS = "overreach.blends"
 MODELS = "overreach.models"
 """Entry points to functions that return a description: () -> Model."""
 
-USUAL = "planar"
+USUAL_MODEL = "planar"
 """The robot that is used if none is named."""
 
 KINDS: dict[str, tuple[str, type[Parameters]]] = {
     LAWS: ("law", Law), BODIES: ("law", WholeBody), BLENDS: ("blend", Blend)
 }  # fmt: skip
+"""Group of entry points -> what people call its plugs, and the class that they extend."""
 
 
 @cache
@@ -52,28 +53,28 @@ def law_names() -> list[str]:
     return names(LAWS, BODIES)
 
 
-def _plug(kind: str, name: str, *groups: str) -> type[Any]:
+def _plug(name: str, *groups: str) -> type[Any]:
     """Return the class of the plug called `name`; raises SetupError if there is none or it is not valid."""
     for group in groups:
+        kind, wanted = KINDS[group]
         if name in _points(group):
             plug = _points(group)[name].load()
-            wanted = KINDS[group][1]
             if not (isinstance(plug, type) and issubclass(plug, wanted)):
                 raise SetupError(f"the {kind} {name!r} is no subclass of {wanted.__module__}.{wanted.__name__}")
             if getattr(plug, "name", "") != name:
                 raise SetupError(f"the {kind} {name!r} calls itself {getattr(plug, 'name', '')!r}: use one name")
             return plug
-    raise UnknownNameError(kind, name, names(*groups))
+    raise UnknownNameError(KINDS[groups[0]][0], name, names(*groups))
 
 
 def law_plug(name: str) -> type[WholeBody]:
     """Return the class of the law or whole body called `name`."""
-    return _plug("law", name, LAWS, BODIES)
+    return _plug(name, LAWS, BODIES)
 
 
 def blend_plug(name: str) -> type[Blend]:
     """Return the class of the blend called `name`."""
-    return _plug("blend", name, BLENDS)
+    return _plug(name, BLENDS)
 
 
 def load_blend(name: str, parameters: Mapping[str, Any] | None = None) -> Blend:

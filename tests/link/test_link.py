@@ -105,6 +105,8 @@ def test_a_rival_is_loaded_at_rest_and_then_driven() -> None:
         assert "Let go first: 'qp'" in answer.reason
         until(lambda: observer.speed() == 0.0, what="rest")
         assert observer.link.request(ConfigureRequest(Settings(SPACE, Choice("qp")))) == Accepted()
+        driver.send(held=False)  # however long the loading took: a press in an unbroken silence would not count
+        until(lambda: observer.now.ack == driver.seq, what="letting go")
         start = observer.now
         driver.grip += 1
         driver.drive(1.0)

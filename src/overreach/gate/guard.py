@@ -84,8 +84,7 @@ class Guard:
         if within(wanted, self.written, self._mosts, self._steps):
             return tuple(wanted)
         out: list[float] = []
-        for rate, was, most, change_max in zip(wanted, self.written, self._mosts, self._changes, strict=True):
-            change = change_max * dt
+        for rate, was, most, change in zip(wanted, self.written, self._mosts, self._steps, strict=True):
             held = min(most, was + change, max(-most, was - change, rate))
             if not abs(rate - held) <= SLACK * change:  # so that NaN is caught as well
                 k = len(out)

@@ -10,7 +10,6 @@ from concurrent.futures import Future
 from threading import Thread
 from typing import final
 
-from overreach.errors import SetupError
 from overreach.law.blend import Blend, Step
 from overreach.law.body import Planner, WholeBody
 from overreach.link.messages import Choice, Plug, Scene, Settings, encode
@@ -37,9 +36,10 @@ def usual(model: Model, law: Choice) -> Settings:
 
 
 def build(settings: Settings, model: Model) -> Built:
-    """Return `settings` ready for use; raises SetupError if they cannot be used. May import, and be slow."""
-    if not 0.0 < settings.speed_scale <= 1.0:
-        raise SetupError(f"speed scale must be > 0 and <= 1, got {settings.speed_scale:g}")
+    """Return `settings` ready for use; raises SetupError if they cannot be used. May import, and be slow.
+
+    The speed is left to the gate, which checks it when they come into force.
+    """
     placed_model = model.placed(model.mount, settings.workspace)
     check_workspace(placed_model, settings.workspace)
     blend = load_blend(settings.blend.name, settings.blend.parameters)

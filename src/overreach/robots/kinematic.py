@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import final
 
 from overreach.model.model import Model, channels, check_reach
-from overreach.plugs import USUAL, load_model
+from overreach.plugs import USUAL_MODEL, load_model
 from overreach.robots.arc import arc
 from overreach.robots.imperfect import Actuators, Imperfection, Sensors
 from overreach.types import BaseTwist, RobotState
@@ -31,7 +31,7 @@ class KinematicRobot:
         psi: float | None = None,
         now: float = 0.0,
     ) -> None:
-        self.model = model or load_model(USUAL)
+        self.model = model or load_model(USUAL_MODEL)
         self._imperfection = imperfection or Imperfection()
         self._l = self.model.start.l if l is None else l
         self._psi = self.model.start.psi if psi is None else psi

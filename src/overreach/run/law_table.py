@@ -9,7 +9,7 @@ from overreach.law.blend import Blend
 from overreach.parameters import schema
 from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, names
 
-USUAL = "tanh"
+USUAL_BLEND = "tanh"
 """The blend of a scenario that names none: the paper's."""
 
 
@@ -17,7 +17,7 @@ def read_law(table: dict[str, Any], name: str) -> tuple[Blend, dict[str, dict[st
     """Return the blend, and the parameters of laws by their names; raises ScenarioError if one cannot be used."""
     flat = {key: value for key, value in table.items() if not isinstance(value, dict)}
     try:
-        kind = flat.pop("blend", USUAL)
+        kind = flat.pop("blend", USUAL_BLEND)
         if not isinstance(kind, str):
             raise SetupError(f"Expected `str`, got `{type(kind).__name__}`")
         blend = _blend(kind, flat, name)
