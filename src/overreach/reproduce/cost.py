@@ -35,7 +35,7 @@ def section(lab: Lab) -> Section:
         xscale="log",
         xlabel="time of one whole step [µs]: dot mean, line shortest call to p99",
     )
-    axis.set_xlim(0.1, max(one["p99"] for one in steps.values()) * 4)
+    axis.set_xlim(min(one["min"] for one in steps.values()) / 2, max(one["p99"] for one in steps.values()) * 4)
     axis.grid(axis="y", visible=False)
     default, his = ratios["default_qp"], steps["paper, plain"]["mean"]
     rows: list[tuple[str, ...]] = [
