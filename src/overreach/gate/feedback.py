@@ -101,10 +101,11 @@ class Feedback:
     def _follows(self, t: float, passed: float, positions: Sequence[Position], rates: Sequence[float]) -> str:
         """Return which channel does not do what was asked of it, and how; or ""."""
         asked, lagged = self.asked.in_force, self.asked.lagged
-        for (k, tolerance, slowest, owed), at_once, slowly, position, rate in zip(
-            self._thresholds, asked, lagged, positions, rates, strict=True
-        ):
-            if at_once - tolerance <= rate <= at_once + tolerance or self._near(tolerance, at_once, slowly, rate):
+        for k, tolerance, slowest, owed in self._thresholds:
+            at_once, slowly, position, rate = asked[k], lagged[k], positions[k], rates[k]
+            low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
+            wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
+            if low - wide <= rate <= high + wide:
                 self._off_since[k] = math.inf
             else:
                 self._off_since[k] = min(self._off_since[k], t)
@@ -120,13 +121,6 @@ class Feedback:
                     moves = self._channels[k].moves
                     return f"The robot's feedback is frozen: {moves} does not change, though it was asked to."
         return ""
-
-    @staticmethod
-    def _near(tolerance: float, at_once: float, slowly: float, rate: float) -> bool:
-        """Say whether a rate lies between two requests, within the tolerance."""
-        low, high = (at_once, slowly) if at_once < slowly else (slowly, at_once)
-        wide = max(tolerance, TOLERANCE_PART * high, -TOLERANCE_PART * low)
-        return low - wide <= rate <= high + wide
 
     def _why_not(self, k: int, position: Position, rate: float) -> str:
         channel = self._channels[k]

@@ -74,8 +74,9 @@ class Gate:
         self._refusal = Verdict.OUT_OF_ORDER
         self._refused_at = -math.inf
         self._reason = ""
-        self._twist = self._wished = self._goal = STILL
-        self._scale = 1.0
+        self._twist = STILL
+        self._wished: Twist | None = STILL
+        self._goal, self._scale = limit_speed(STILL, self.limits)
         self._frame = Frame.HAND
 
     def set_speed_scale(self, value: float) -> None:
@@ -83,6 +84,7 @@ class Gate:
         if not 0.0 < value <= 1.0:
             raise SetupError(f"speed scale must be > 0 and <= 1, got {value:g}")
         self.speed_scale = value
+        self._wished = None
 
     @property
     def resting(self) -> bool:
@@ -126,7 +128,10 @@ class Gate:
         latch = self.latch
         seq, grip = self._seen.get(said.operator, NEVER)
         refusal: Verdict | None = None
-        if not math.isfinite(sum(astuple(said.twist)) + (said.gripper or 0.0) + said.seen):
+        numbers = [*astuple(said.twist), said.seen]
+        if said.gripper is not None:
+            numbers.append(said.gripper)
+        if not all(map(math.isfinite, numbers)):
             refusal = Verdict.NOT_FINITE
         elif said.seq <= seq:
             refusal = Verdict.OUT_OF_ORDER
@@ -202,12 +207,10 @@ class Gate:
     def tick(self, now: float, dt: float) -> Gated:
         """Return the command for the period `dt` [s] that begins at `now` [s]."""
         wish, verdict = self._wish(now)
-        wished = wish != STILL
-        if self.speed_scale != 1.0:
-            wish = Twist(*[part * self.speed_scale for part in astuple(wish)])
         if wish != self._wished:
             self._wished = wish
-            self._goal, self._scale = limit_speed(wish, self.limits)
+            scaled = Twist(*[part * self.speed_scale for part in astuple(wish)])
+            self._goal, self._scale = limit_speed(scaled, self.limits)
         goal, scale = self._goal, self._scale
         self._twist, ramping = slew(self._twist, goal, self.limits, dt)
         gripper = None
@@ -220,5 +223,5 @@ class Gate:
         reason = ""
         if now - self._refused_at < TOLD_S and (told := weightier(self._refusal, verdict)) is not verdict:
             verdict, reason = told, self._reason
-        motion = Motion.NONE if self.resting else Motion.ALLOWED if wished else Motion.RAMPING
+        motion = Motion.NONE if self.resting else Motion.ALLOWED if wish != STILL else Motion.RAMPING
         return Gated(self._twist, self._frame, gripper, scale, motion, verdict, reason)

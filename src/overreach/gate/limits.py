@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from math import hypot
+from operator import add, sub
 
 from msgspec.structs import astuple
 
@@ -64,11 +65,11 @@ def slew(now: Twist, goal: Twist, limits: Limits, dt: float) -> tuple[Twist, boo
     """
     if now == goal:
         return goal, False
-    way = Twist(*[to - at for to, at in zip(astuple(goal), astuple(now), strict=True)])
+    way = Twist(*map(sub, astuple(goal), astuple(now)))
     worst = _worst(way, limits.dv_c * dt, limits.dv_z * dt, limits.dw_c * dt)
     if worst <= 1.0 + SLACK:
         return goal, False
-    return Twist(*[at + part / worst for at, part in zip(astuple(now), astuple(way), strict=True)]), True
+    return Twist(*map(add, astuple(now), [part / worst for part in astuple(way)])), True
 
 
 def feasible_scale(
