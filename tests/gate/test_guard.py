@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from itertools import pairwise
+from itertools import pairwise, product
 
 import pytest
 from hypothesis import given, settings
@@ -257,10 +257,11 @@ def test_writes_change_from_one_to_the_next() -> None:
 
 def test_every_channel_must_be_there() -> None:
     """Rates for too few channels are a mistake of the caller's, and raise; nothing is written."""
-    for motion in (Motion.ALLOWED, Motion.RAMPING):
+    rounded = CHANGE[0] * DT * (1.0 + 1e-7)  # a little too much, which is cut off
+    for motion, first in product((Motion.ALLOWED, Motion.RAMPING), (0.0, rounded)):
         guard = Guard(CHANNELS, 0.0)
         with pytest.raises(ValueError, match="zip"):
-            guard.write((0.0, 0.0), motion, DT)
+            guard.write((first, 0.0), motion, DT)
         assert guard.written == ZERO
 
 
