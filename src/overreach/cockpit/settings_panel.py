@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from typing import Any, final
 
@@ -13,8 +14,8 @@ from overreach.link.messages import Accepted, Choice, Plug, Refused, Settings
 from overreach.parameters import Parameter
 from overreach.types import Frame
 
-THROTTLE_S = 0.1
-"""A slider that is dragged asks for new settings at most this often."""
+PAUSE_S = 0.1
+"""A slider that is dragged asks for new settings at most this often [s]."""
 EDGE_M = 0.05
 """The workspace's range ends this far [m] short of the ends of the arm's reach."""
 NONE = Plug("", ())
@@ -128,7 +129,7 @@ class SettingsPanel:
         slider = ui.slider(min=least, max=most, step=step, value=shown)
         slider.props(f'id="set-{field}" aria-label="{label}"')
         value.bind_text_from(slider, "value", backward=lambda number: f"{number:g}")
-        slider.on("update:model-value", lambda: self._ask(changed(slider.value)), throttle=THROTTLE_S)
+        slider.on_value_change(self._handler(changed))
         return slider
 
     def _range(self, low: str, high: str, label: str, least: float, most: float, step: float, unit: str) -> ui.range:
@@ -138,20 +139,19 @@ class SettingsPanel:
         both.props(f'id="set-{low}" aria-label="{label}"')
         value.bind_text_from(both, "value", backward=lambda pair: f"{pair['min']:g} to {pair['max']:g}")
 
-        def change(settings: Settings) -> Settings:
-            ends = {low: both.value["min"], high: both.value["max"]}
-            changed: Settings = _with(settings, workspace=_with(settings.workspace, **ends))
-            return changed
+        def changed(ends: dict[str, float]) -> Change:
+            def change(settings: Settings) -> Settings:
+                space = _with(settings.workspace, **{low: ends["min"], high: ends["max"]})
+                return _with(settings, workspace=space)  # type: ignore[no-any-return]  # msgspec's replace is untyped
 
-        both.on("update:model-value", lambda: self._ask(change), throttle=THROTTLE_S)
+            return change
+
+        both.on_value_change(self._handler(changed))
         return both
 
     def _handler(self, changed: Callable[[Any], Change]) -> Callable[[Any], Any]:
-        async def handle(event: Any) -> None:
-            if not self._quiet:
-                await self._ask(changed(event.value))
-
-        return handle
+        # Not itself a coroutine: that would begin later, when it can no longer tell whether `show` made the change.
+        return lambda event: None if self._quiet else self._ask(changed(event.value))
 
     async def _ask(self, change: Change) -> None:
         """Ask for the settings in force with `change`. One question at a time; changes made meanwhile are combined."""
@@ -171,6 +171,7 @@ class SettingsPanel:
                     break
                 if wanted != self._relay.settings:
                     self._tell(await self._relay.configure(wanted))
+                    await asyncio.sleep(PAUSE_S)
         finally:
             self._asking = False
         self.show(self._relay.settings)
