@@ -19,7 +19,7 @@ from overreach.model.workspace import Workspace
 from overreach.types import BaseTwist, Command, Pose
 
 STATIC = Path(overreach.__file__).parent / "cockpit" / "static"
-FINGERPRINTS = {2: "6162737beaea6836"}
+FINGERPRINTS = {2: "6162737beaea6836", 3: "df4c228980fe815f"}
 """Protocol -> what its messages are, docstrings included: what a field means stands there."""
 
 
@@ -47,7 +47,7 @@ def test_the_greatest_settings_fit_into_a_message() -> None:
 
 
 def javascript() -> str:
-    return "\n".join(path.read_text("utf-8") for path in sorted(STATIC.glob("*.js")))
+    return "\n".join(path.read_text("utf-8") for path in sorted(STATIC.rglob("*.js")))
 
 
 READS: dict[str, tuple[str, type[Any], set[str]]] = {
@@ -87,10 +87,14 @@ def test_what_the_page_destructures_is_sent() -> None:
 def test_the_page_says_what_is_taken() -> None:
     """A command from the page has the fields of its message, no more and none that is needed fewer."""
     said = re.search(r'type: "command", ([\w, ]+) \}', javascript())
+    numbered = re.search(r"\{ \.\.\.message, (\w+): this\.seq, (\w+): ", javascript())
     assert said
-    assert set(said.group(1).split(", ")) <= set(wire.CommandFromPage.__struct_fields__)
+    assert numbered
+    names = {*said.group(1).split(", "), *numbered.groups()}
+    assert names <= set(wire.CommandFromPage.__struct_fields__)
     needed = {field.name for field in msgspec.structs.fields(wire.CommandFromPage) if field.required}
-    assert needed <= set(said.group(1).split(", "))
+    assert needed <= names
+    assert set(numbered.groups()) == set(wire.BeatFromPage.__struct_fields__)
 
 
 def test_no_kinematics_in_the_page() -> None:

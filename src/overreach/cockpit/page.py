@@ -9,6 +9,7 @@ from nicegui import ui
 from overreach import __version__
 from overreach.cockpit.relay import Relay
 from overreach.cockpit.settings_panel import SettingsPanel
+from overreach.link.messages import Settings
 
 _KEY = '<span><i class="k-base"></i>{0}<sub>b</sub> base <i class="k-arm"></i>{0}<sub>m</sub> arm</span>'
 PLOTS = {
@@ -18,7 +19,7 @@ PLOTS = {
     "angular": f"<b>angular</b> rad/s {_KEY.format('ω')}",
 }
 """The plots, top to bottom, with their captions; `static/plots.js` says what is in each."""
-MARKUP = files("overreach.cockpit").joinpath("static/stage.html")
+STATIC = files("overreach.cockpit").joinpath("static")
 
 
 def build_page(relay: Relay) -> None:
@@ -29,7 +30,7 @@ def build_page(relay: Relay) -> None:
         f'<script type="module" src="/static/main.js?v={__version__}"></script>'
     )
     with ui.element("div").props("id=console"):
-        ui.html(MARKUP.read_text("utf-8"), sanitize=False, tag="div").props("id=cockpit")
+        _markup("stage").props("id=cockpit")
         with ui.element("aside").props('id=side aria-label="Plots and settings"'):
             ui.html(_AUTHORITY, sanitize=False, tag="div")
             with ui.element("section").classes("card"):
@@ -40,9 +41,30 @@ def build_page(relay: Relay) -> None:
                         ui.echart({}).classes("plot").props(
                             f'data-plot="{name}" role=img aria-label="{name} over time"'
                         )
-            panel = SettingsPanel(relay)
-    relay.on_settings.add(panel.show)
-    ui.context.client.on_delete(lambda: relay.on_settings.discard(panel.show))
+            _markup("inputs")
+            _settings(relay)
+
+
+def _markup(name: str) -> ui.html:
+    """Add the elements of one of our own files."""
+    return ui.html(STATIC.joinpath(f"{name}.html").read_text("utf-8"), sanitize=False, tag="div")
+
+
+def _settings(relay: Relay) -> None:
+    """Add the settings; they are made anew when the robot side is another than before."""
+    with ui.element("div") as place:
+        panel = SettingsPanel(relay)
+
+    def show(settings: Settings) -> None:
+        nonlocal panel
+        if panel.welcome is not relay.welcome and panel.differs(relay.welcome):
+            place.clear()
+            with place:
+                panel = SettingsPanel(relay)
+        panel.show(settings)
+
+    relay.on_settings.add(show)
+    ui.context.client.on_delete(lambda: relay.on_settings.discard(show))
 
 
 _AUTHORITY = """

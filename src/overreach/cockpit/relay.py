@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import secrets
 from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, final
@@ -12,58 +11,20 @@ from typing import Any, final
 import msgspec
 from fastapi import WebSocket, WebSocketDisconnect
 
+from overreach.clock import MonotonicClock
 from overreach.cockpit import wire
+from overreach.cockpit.visitor import Visitor
 from overreach.errors import LinkError
-from overreach.link.messages import Accepted, AnyRequest, ConfigureRequest, Refused, Settings, State, Welcome
+from overreach.link.messages import Accepted, AnyRequest, ConfigureRequest, Refused, Scene, Settings, State, Welcome
 from overreach.link.operator_end import OperatorEnd
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
-from overreach.types import Command
+from overreach.types import Command, Frame
 
-SAID_MOST = 32
-"""How many answers wait for a page that does not read; older ones are dropped."""
 ASKED_MOST = 8
 """How many questions of one page may wait for their answers."""
-OPERATOR_BITS = 52
-"""Operator numbers are random and fit into a JavaScript number."""
-
-
-@final
-class Page:
-    """One connected page. Holds only the newest state: a slow page misses states, and delays nobody."""
-
-    def __init__(self, socket: WebSocket) -> None:
-        self.operator = secrets.randbits(OPERATOR_BITS) + 1
-        self.seq = 0
-        self.grip = 0
-        self._socket = socket
-        self._newest: bytes | None = None
-        self._said: list[bytes] = []
-        self._wake = asyncio.Event()
-        self.turn = asyncio.Lock()
-        self.asked = 0
-
-    def show(self, state: bytes) -> None:
-        """Send `state` unless a newer one comes first."""
-        self._newest = state
-        self._wake.set()
-
-    def say(self, message: bytes) -> None:
-        """Send `message` in any case."""
-        self._said.append(message)
-        del self._said[:-SAID_MOST]
-        self._wake.set()
-
-    async def send_forever(self) -> None:
-        """Send whatever is waiting, until the page is gone."""
-        while True:
-            await self._wake.wait()
-            self._wake.clear()
-            said, self._said = self._said, []
-            newest, self._newest = self._newest, None
-            for message in said:
-                await self._socket.send_text(message.decode())
-            if newest is not None:
-                await self._socket.send_text(newest.decode())
+NO_SCENE = Scene((0.0, 0.0), (), ())
+SILENT_S = 1.0
+"""After this long without a state [s] it is asked whether the robot side is another than before."""
 
 
 @final
@@ -77,8 +38,12 @@ class Relay:
         self.on_settings: set[Callable[[Settings], None]] = set()
         """Called, on the event loop, with settings that have come into force."""
         self._link = link
-        self._pages: set[Page] = set()
+        self._clock = MonotonicClock()
+        self._pages: set[Visitor] = set()
         self._revision = welcome.revision
+        self._pictures = 0
+        self._t = 0.0
+        self._heard_at = self._clock.now()
         self._stopper = ThreadPoolExecutor(1, "stop")
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tasks: set[asyncio.Task[object]] = set()
@@ -87,17 +52,20 @@ class Relay:
         """Begin to receive states. Call on the event loop."""
         self._loop = asyncio.get_running_loop()
         self._link.subscribe(self._from_robot)
+        self._spawn(self._watch())
 
     def _from_robot(self, state: State) -> None:
         """Take a state, on zenoh's thread."""
+        self._t, self._heard_at = state.t, self._clock.now()
         if (self._pages or state.revision != self._revision) and self._loop is not None:
-            message = wire.encode(wire.StateToPage(state))
+            self._pictures += 1
+            message = wire.encode(wire.StateToPage(self._pictures, state))
             with contextlib.suppress(RuntimeError):  # The event loop has closed: the cockpit is ending.
-                self._loop.call_soon_threadsafe(self._show, message, state.revision)
+                self._loop.call_soon_threadsafe(self._show, self._pictures, message, state.revision)
 
-    def _show(self, message: bytes, revision: int) -> None:
+    def _show(self, n: int, message: bytes, revision: int) -> None:
         for page in self._pages:
-            page.show(message)
+            page.show(n, message)
         if revision != self._revision:
             self._revision = revision
             self._spawn(self._refresh())
@@ -108,17 +76,46 @@ class Relay:
         task.add_done_callback(self._tasks.discard)
 
     async def _refresh(self) -> None:
-        """Fetch settings that somebody has changed, and tell every page."""
+        """Fetch what somebody has changed, or what a robot side that was started anew is, and tell every page."""
         try:
-            welcome = await asyncio.to_thread(self._link.welcome, 1.0)
+            self._take_over(await asyncio.to_thread(self._link.welcome, 1.0))
         except LinkError:
             self._revision = -1  # not known: the next state asks again
-            return
-        self.settings, self.scene = welcome.settings, welcome.scene
+
+    async def _watch(self) -> None:
+        """Where nothing comes any more, look for a robot side under another name or of another version."""
+        told = ""
+        while True:
+            await asyncio.sleep(SILENT_S)
+            if self._clock.now() - self._heard_at < SILENT_S:
+                told = ""
+                continue
+            try:
+                found = await asyncio.to_thread(self._link.seek)
+            except LinkError as error:
+                if str(error) != told:
+                    told = str(error)
+                    self._say(wire.AnswerToPage(-1, False, told))
+                continue
+            if found is not None:
+                self._take_over(found)
+
+    def _take_over(self, welcome: Welcome) -> None:
+        """Make `welcome` what is known of the robot side."""
+        same = _robot(welcome) == _robot(self.welcome)
+        self.welcome, self.settings, self.scene = welcome, welcome.settings, welcome.scene
+        self._revision = welcome.revision
         for page in self._pages:
-            page.say(wire.encode(wire.SettingsToPage(self.settings, self.scene)))
+            page.say(wire.encode(wire.SettingsToPage(self.settings, self.scene) if same else self._greeting(page)))
         for told in list(self.on_settings):
             told(self.settings)
+
+    def _greeting(self, page: Visitor) -> wire.Greeting:
+        return wire.Greeting(page.operator, self.welcome, self.settings, self.scene)
+
+    def _say(self, message: object) -> None:
+        for page in self._pages:
+            page.say(wire.encode(message))
 
     async def ask(self, request: AnyRequest) -> Accepted | Refused:
         """Ask the robot side, without holding up the pages. Stop has its own thread and waits for nothing else."""
@@ -135,8 +132,8 @@ class Relay:
 
     async def serve(self, socket: WebSocket) -> None:
         """Serve one page until it is gone; then let go of the robot and disarm for it."""
-        page = Page(socket)
-        page.say(wire.encode(wire.Greeting(page.operator, self.welcome, self.settings, self.scene)))
+        page = Visitor(socket, self._clock)
+        page.say(wire.encode(self._greeting(page)))
         self._pages.add(page)
         sender = asyncio.create_task(page.send_forever())
         try:
@@ -152,7 +149,7 @@ class Relay:
             with contextlib.suppress(Exception, asyncio.CancelledError):
                 await sender
 
-    async def _take(self, page: Page, text: str) -> None:
+    async def _take(self, page: Visitor, text: str) -> None:
         """Pass on one message of a page; what is not understood is dropped, and the page told."""
         try:
             if len(text) > wire.LONGEST:
@@ -162,12 +159,24 @@ class Relay:
             page.say(wire.encode(wire.AnswerToPage(-1, False, f"Not understood: {error}")))
             return
         if isinstance(message, wire.CommandFromPage):
-            page.seq, page.grip = message.seq, message.grip
-            self._link.send(Command(page.operator, *msgspec.structs.astuple(message)))  # untouched
-        else:
+            self._command(page, message)
+        elif isinstance(message, wire.BeatFromPage):
+            page.seq = message.seq
+        elif isinstance(message, wire.AskFromPage):
             self._spawn(self._answer(page, message))
+        if isinstance(message, wire.CommandFromPage | wire.BeatFromPage):
+            page.heard(message.seq, self._t)
+        if not isinstance(message, wire.AskFromPage):
+            page.shown(message.n if isinstance(message, wire.ShownFromPage) else message.shown)
 
-    async def _answer(self, page: Page, question: wire.AskFromPage) -> None:
+    def _command(self, page: Visitor, said: wire.CommandFromPage) -> None:
+        """Pass on a command, untouched."""
+        page.seq, page.grip = said.seq, said.grip
+        self._link.send(
+            Command(page.operator, said.seq, said.grip, said.held, said.twist, said.frame, said.gripper, said.seen)
+        )
+
+    async def _answer(self, page: Visitor, question: wire.AskFromPage) -> None:
         requests: dict[str, AnyRequest] = {
             "stop": StopRequest(),
             "reset": ResetRequest(),
@@ -175,6 +184,9 @@ class Relay:
             "disarm": DisarmRequest(page.operator),
             "restart": RestartRequest(),
         }
+        what, _, frame = question.what.partition(" ")
+        if what == "frame" and frame in tuple(Frame):
+            requests[question.what] = ConfigureRequest(msgspec.structs.replace(self.settings, frame=Frame(frame)))
         request = requests.get(question.what)
         answer: Accepted | Refused
         if request is None:
@@ -192,3 +204,8 @@ class Relay:
                 page.asked -= 1
         reason = answer.reason if isinstance(answer, Refused) else ""
         page.say(wire.encode(wire.AnswerToPage(question.id, not reason, reason)))
+
+
+def _robot(welcome: Welcome) -> Welcome:
+    """Return what stays the same when settings change."""
+    return msgspec.structs.replace(welcome, settings=welcome.defaults, scene=NO_SCENE, revision=0)

@@ -10,7 +10,7 @@ import msgspec
 from nicegui import ui
 
 from overreach.cockpit.relay import Relay
-from overreach.link.messages import Accepted, Choice, Plug, Refused, Settings
+from overreach.link.messages import Accepted, Choice, Plug, Refused, Settings, Welcome
 from overreach.parameters import Parameter
 from overreach.types import Frame
 
@@ -33,6 +33,8 @@ class SettingsPanel:
         self._asking = False
         self._wanted: list[Change] = []
         welcome, shown = relay.welcome, relay.settings
+        self.welcome = welcome
+        """The robot side that the controls are made for."""
         self._own: dict[tuple[str, str], dict[str, Any]] = {}
         """The controls of each law's and each blend's own parameters."""
         self._groups: dict[tuple[str, str], ui.element] = {}
@@ -52,6 +54,13 @@ class SettingsPanel:
             self._bearing = self._range("psi_min", "psi_max", "Ψ  workspace in ψ", -1.5, 1.5, 0.05, "rad")
             ui.button("Defaults", on_click=self._defaults).props('flat dense no-caps id="defaults"')
         self.show(relay.settings)
+
+    def differs(self, welcome: Welcome) -> bool:
+        """Say whether another robot side offers other things to choose from."""
+        own = self.welcome
+        return (own.laws, own.blends, own.reach, own.defaults) != (
+            welcome.laws, welcome.blends, welcome.reach, welcome.defaults,
+        )  # fmt: skip
 
     @staticmethod
     def _speed_changed(value: float) -> Change:
@@ -189,7 +198,7 @@ class SettingsPanel:
         if self._asking:
             return
         self._quiet = True
-        welcome, space = self._relay.welcome, settings.workspace
+        welcome, space = self.welcome, settings.workspace
         self._law.set_options(self._laws(settings), value=settings.law.name)
         self._frame.value = settings.frame
         self._blend.value = settings.blend.name

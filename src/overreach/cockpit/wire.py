@@ -21,7 +21,7 @@ Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 
 
 class CommandFromPage(msgspec.Struct, frozen=True, tag="command", forbid_unknown_fields=True):
-    """See `overreach.types.Command`."""
+    """See `overreach.types.Command`. seq: counts commands and beats; shown: number of the newest picture that came."""
 
     seq: Count
     grip: Count
@@ -30,20 +30,34 @@ class CommandFromPage(msgspec.Struct, frozen=True, tag="command", forbid_unknown
     frame: Frame
     gripper: float | None = None
     seen: float = 0.0
+    shown: Count = 0
+
+
+class BeatFromPage(msgspec.Struct, frozen=True, tag="beat", forbid_unknown_fields=True):
+    """Nothing to say, but an answer is wanted: the page measures how late the link is."""
+
+    seq: Count
+    shown: Count = 0
+
+
+class ShownFromPage(msgspec.Struct, frozen=True, tag="shown", forbid_unknown_fields=True):
+    """Number n of the newest picture that has come."""
+
+    n: Count
 
 
 class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=True):
-    """One of the buttons: `what` is stop, reset, arm, disarm or restart; `id` comes back in the answer."""
+    """One of the buttons: `what` is stop, reset, arm, disarm, restart, or frame NAME; the answer has the same `id`."""
 
     id: int
     what: str
 
 
-FromPage = CommandFromPage | AskFromPage
+FromPage = CommandFromPage | BeatFromPage | ShownFromPage | AskFromPage
 
 
 class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
-    """First message to a page: its operator number, the robot, the settings in force, and how to draw them."""
+    """To a page, first and when the robot side is another: its operator number, the robot, its settings, its look."""
 
     operator: int
     robot: Welcome
@@ -51,9 +65,17 @@ class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
     scene: Scene
 
 
-class StateToPage(msgspec.Struct, frozen=True, tag="state"):
-    """A state of the robot."""
+class HeardToPage(msgspec.Struct, frozen=True, tag="heard"):
+    """Everything up to number `seq` was heard; t [s]: time of the robot's newest state. Goes ahead of pictures."""
 
+    seq: int
+    t: float
+
+
+class StateToPage(msgspec.Struct, frozen=True, tag="state"):
+    """A picture, by its number n: a state of the robot."""
+
+    n: int
     state: State
 
 

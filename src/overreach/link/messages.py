@@ -21,7 +21,7 @@ from overreach.parameters import Parameter
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
 from overreach.types import BaseTwist, Command, Frame, Pose, Twist
 
-PROTOCOL = 2
+PROTOCOL = 3
 """Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
 
 LONGEST = 4096
@@ -61,7 +61,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     workspace: Workspace
     law: Choice = Choice("exact")
     blend: Choice = Choice("smoothstep")
-    frame: Frame = Frame.HAND
+    frame: Frame = Frame.WORLD
     speed_scale: float = 1.0
 
 
@@ -144,14 +144,15 @@ Answer = Accepted | Refused | Welcome
 class State(msgspec.Struct, frozen=True, gc=False):
     """What the robot side tells, at least 50 times a second.
 
-    t [s]: on the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq of
-    their last accepted command, and the `t` of the state that they saw when sending it. verdict, word, sentence, look:
-    as in `verdicts`; scale: the part of the command that is carried out; stopped: whether it is stopped or faulted, so
-    that only a reset leads out. twist, in `frame`, and gripper: the command that the gate let through. l, psi, theta_e,
-    mu, sigma, v_m, w_m and base: as in `types`; pose: of the base; joints [rad, m]; hand: its position in the world
-    [m]; velocity: its true velocity in the world [m/s]; links: the arm as a line through points in the world [m]. State
-    at t, rates from t on. late_p50, late_p99, late_max [us]: the loop's lateness over the last second. revision: counts
-    the changes of the settings.
+    t [s]: on the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq
+    of their last accepted command, and the `t` of the state that they had heard of when sending it. verdict, word,
+    sentence, look: as in `verdicts`; scale: the part of the command that is carried out; stopped: whether it is
+    stopped or faulted, so that only a reset leads out. twist, in `frame`, and gripper: the command that the gate
+    let through; forward [rad]: where x of the frame in the settings points, as a heading in the world. l, psi,
+    theta_e, mu, sigma, v_m, w_m and base: as in `types`; pose: of the base; joints [rad, m]; hand: its position in
+    the world [m]; velocity: its true velocity in the world [m/s]; links: the arm as a line through points in the
+    world [m]. State at t, rates from t on. late_p50, late_p99, late_max [us]: the loop's lateness over the last
+    second. revision: another number after every change of the settings and every start.
     """
 
     t: float
@@ -168,6 +169,7 @@ class State(msgspec.Struct, frozen=True, gc=False):
     stopped: bool
     twist: Twist
     frame: Frame
+    forward: float
     gripper: float | None
     l: float
     psi: float

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import final
 
+import msgspec
 import zenoh
 
 from overreach import __version__
@@ -46,15 +48,19 @@ class OperatorEnd:
     def __init__(self, connect: str, robot: str = "") -> None:
         self.endpoint = connect
         self.robot = robot
+        self._given = robot
+        self._on_state: Callable[[State], None] | None = None
         self._session = open_session(connect=connect)
         self._commands: zenoh.Publisher | None = None
         self._states: zenoh.Subscriber[None] | None = None
 
     def subscribe(self, on_state: Callable[[State], None]) -> None:
         """Call `on_state` with every state that comes."""
+        self._on_state = on_state
 
         def receive(sample: zenoh.Sample) -> None:
-            on_state(decode_state(sample.payload.to_bytes()))
+            with contextlib.suppress(msgspec.DecodeError):  # of another protocol: `seek` says so
+                on_state(decode_state(sample.payload.to_bytes()))
 
         self._states = self._session.declare_subscriber(key(self.robot, "state"), receive)
 
@@ -69,10 +75,10 @@ class OperatorEnd:
             )
         self._commands.put(encode(command))
 
-    def _ask(self, what: str, message: object, timeout_s: float) -> dict[str, Answer]:
-        """Return the answers by the names of the robots that gave them."""
+    def _ask(self, what: str, message: object, timeout_s: float, robot: str = "") -> dict[str, Answer]:
+        """Return the answers by the names of the robots that gave them; `robot` "" asks all."""
         replies = self._session.get(
-            key(self.robot or ANY, what),
+            key(robot or ANY, what),
             payload=encode(message),
             timeout=timeout_s,
             target=zenoh.QueryTarget.ALL,
@@ -87,7 +93,9 @@ class OperatorEnd:
 
     def request(self, request: AnyRequest) -> Accepted | Refused:
         """Ask the robot side for something; return its answer. Blocks for at most ANSWER_S, settings for LOADING_S."""
-        answers = self._ask("request", request, LOADING_S if isinstance(request, ConfigureRequest) else ANSWER_S)
+        answers = self._ask(
+            "request", request, LOADING_S if isinstance(request, ConfigureRequest) else ANSWER_S, self.robot
+        )
         answer = answers.get(self.robot)
         if isinstance(answer, Accepted | Refused):
             return answer
@@ -101,15 +109,9 @@ class OperatorEnd:
         clock = MonotonicClock()
         until = clock.now() + wait_s
         while True:
-            answers = self._ask("hello", Hello(PROTOCOL, __version__), 0.5)
-            if len(answers) > 1:
-                raise LinkError(f"there are several robots: choose one with --robot: {', '.join(sorted(answers))}")
-            for name, answer in answers.items():
-                if isinstance(answer, Welcome):
-                    self.robot = name
-                    return answer
-                if isinstance(answer, Refused):
-                    raise LinkError(answer.reason)
+            found = self._hello(self.robot)
+            if found is not None:
+                return found
             if ended():
                 raise LinkError("the robot side has ended before it was ready (see above)")
             if clock.now() > until:
@@ -119,6 +121,35 @@ class OperatorEnd:
                     f"start it with `overreach robot --listen {self.endpoint}`"
                 )
             clock.sleep_until(clock.now() + AGAIN_S)
+
+    def seek(self) -> Welcome | None:
+        """Return the welcome of the robot side that is there now, by whatever name unless one was given; else None.
+
+        From then on it is the one that is spoken to. Raises LinkError if the two sides do not fit.
+        """
+        before = self.robot
+        found = self._hello(self._given)
+        if self.robot != before:
+            commands, states, self._commands = self._commands, self._states, None
+            for old in (commands, states):
+                if old is not None:
+                    old.undeclare()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
+            if self._on_state is not None:
+                self.subscribe(self._on_state)
+        return found
+
+    def _hello(self, robot: str) -> Welcome | None:
+        """Say hello once, to any robot if `robot` is ""; take the name of the one that answers."""
+        answers = self._ask("hello", Hello(PROTOCOL, __version__), 0.5, robot)
+        if len(answers) > 1:
+            raise LinkError(f"there are several robots: choose one with --robot: {', '.join(sorted(answers))}")
+        for name, answer in answers.items():
+            if isinstance(answer, Welcome):
+                self.robot = name
+                return answer
+            if isinstance(answer, Refused):
+                raise LinkError(answer.reason)
+        return None
 
     def close(self) -> None:
         """Close the session; without this the process could hang at its end."""

@@ -237,7 +237,10 @@ class Loop:
         self._sent_at = tick.now
         malformed, revision = self._link.malformed, self._reception.revision
         try:
-            state = encode(self._reporter.state(tick, self.pilot, self._tick, self.overruns, malformed, revision))
+            frame = self.settings.frame
+            state = encode(
+                self._reporter.state(tick, self.pilot, self._tick, self.overruns, malformed, revision, frame)
+            )
         except Exception as error:
             self.pilot.fail(f"The robot's state cannot be told: {told(error)}.")
             return

@@ -9,9 +9,10 @@ from overreach.arm.chain import Chain, Point
 from overreach.arm.mount import Mount
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
+from overreach.law.frame import FRAMES
 from overreach.link.messages import State
 from overreach.robot_side.timing import Lateness
-from overreach.types import BaseTwist, Pose
+from overreach.types import BaseTwist, Frame, Pose
 
 LATE_EVERY_S = 1.0
 
@@ -25,8 +26,10 @@ class Reporter:
         self._told = (0.0, 0.0, 0.0)
         self._told_at = -inf
 
-    def state(self, tick: Tick, pilot: Pilot, number: int, overruns: int, malformed: int, revision: int) -> State:
-        """Return the tick as a state."""
+    def state(
+        self, tick: Tick, pilot: Pilot, number: int, overruns: int, malformed: int, revision: int, frame: Frame
+    ) -> State:
+        """Return the tick as a state. frame: the pages'."""
         if tick.now - self._told_at >= LATE_EVERY_S:
             self._told = (self.late.percentile(0.5), self.late.percentile(0.99), self.late.most * 1e6)
             self._told_at = tick.now
@@ -34,6 +37,7 @@ class Reporter:
         verdict, split, polar, state = tick.verdict, tick.split, tick.polar, tick.decided.state
         model = pilot.model
         chain = pilot.controller.chain
+        bearing, heading = polar.psi + model.mount.yaw, state.pose.yaw
         p50, p99, most = self._told
         return State(
             t=tick.now,
@@ -50,6 +54,7 @@ class Reporter:
             stopped=tick.latched,
             twist=tick.gated.twist,
             frame=tick.gated.frame,
+            forward=FRAMES[frame](bearing, heading, polar.theta_e) + bearing + heading,
             gripper=tick.gripper,
             l=polar.l,
             psi=polar.psi,

@@ -17,7 +17,7 @@ from overreach.model.model import Model, check_workspace
 from overreach.model.outline import bands, workspace
 from overreach.parameters import Parameters, schema, summary
 from overreach.plugs import BLENDS, blend_plug, blends_in, law_names, law_plug, load_blend, load_law, names, usable
-from overreach.types import Record
+from overreach.types import Frame, Record
 
 
 class Built(Record, frozen=True):
@@ -31,8 +31,12 @@ class Built(Record, frozen=True):
 
 
 def usual(model: Model, law: Choice) -> Settings:
-    """Return the settings that a robot starts with."""
-    return Settings(model.workspace, law, frame=law_plug(law.name).frame)
+    """Return the settings that a robot starts with.
+
+    Pages command in their picture's frame, the world's, unless the law has one of its own.
+    """
+    own = law_plug(law.name).frame
+    return Settings(model.workspace, law, frame=Frame.WORLD if own is Frame.HAND else own)
 
 
 def build(settings: Settings, model: Model) -> Built:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from typing import final
 
 import msgspec
@@ -14,6 +15,9 @@ from overreach.link.messages import PROTOCOL, Settings, Welcome, encode
 from overreach.robot_side.settings import Built, blends_to_choose, laws_to_choose
 from overreach.types import Frame
 
+REVISION_BITS = 48
+"""Revisions fit into a JavaScript number."""
+
 
 @final
 class Reception:
@@ -23,7 +27,7 @@ class Reception:
         self._pilot, self._name, self._rate, self._simulated = pilot, name, rate, simulated
         self._defaults = defaults
         self.laws, self.blends = laws_to_choose(), blends_to_choose()
-        self.revision = -1
+        self.revision = secrets.randbits(REVISION_BITS)  # not that of an earlier start
         self.welcome = msgspec.Raw()
 
     def take(self, built: Built) -> None:

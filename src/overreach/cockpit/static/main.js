@@ -1,29 +1,34 @@
 // Ties the parts of the page together. `window.overreach` is for tests and the curious; nothing depends on it.
 
-import { attachGamepad } from "./gamepad.js";
-import { attachKeys } from "./keys.js";
-import { Link } from "./link.js";
-import { attachPad } from "./pad.js";
-import { Panel } from "./panel.js";
-import { Plots } from "./plots.js";
-import { Stick } from "./stick.js";
-import { toggleTheme } from "./theme.js";
-import { View } from "./view.js";
+import { Gamepads } from "./input/gamepad.js";
+import { attachKeys } from "./input/keys.js";
+import { attachPad } from "./input/pad.js";
+import { Stick } from "./input/stick.js";
+import { attachStop } from "./input/stop.js";
+import { Fitness } from "./link/fitness.js";
+import { Link } from "./link/link.js";
+import { Inputs } from "./show/inputs.js";
+import { Panel } from "./show/panel.js";
+import { Plots } from "./show/plots.js";
+import { toggleTheme } from "./show/theme.js";
+import { View } from "./show/view.js";
 
 const SILENT_MS = 500; // without a state for this long, the robot side counts as silent
 const STOP_AGAIN_MS = 150;
+const LOOK_MS = 100;
 
 const $ = (id) => document.getElementById(id);
 
 // The page's library builds the page after this module has loaded.
 async function built() {
-  while (!$("view") || document.querySelectorAll(".plot").length < 4) await new Promise((resolve) => setTimeout(resolve, 10));
+  while (!$("view") || !$("inputs") || document.querySelectorAll(".plot").length < 4) await new Promise((resolve) => setTimeout(resolve, 10));
 }
 
 await built();
 const panel = new Panel();
 const view = new View($("view"));
 const plots = new Plots([...document.querySelectorAll(".plot")]);
+const fitness = new Fitness();
 const page = { robot: null, settings: null, state: null, stopping: false, heard: performance.now(), drawn: null };
 
 const silent = () => performance.now() - page.heard > SILENT_MS;
@@ -43,6 +48,9 @@ const link = new Link({
     view.show(state);
     plots.add(state);
   },
+  heard() {
+    stick.pump();
+  },
   up() {
     page.heard = performance.now();
   },
@@ -52,6 +60,8 @@ const link = new Link({
   },
 });
 const stick = new Stick(link);
+link.soon = () => stick.held; // the next command acknowledges the picture
+stick.lost.push((doubt) => panel.tell("Let go", doubt));
 
 function configure(settings, scene) {
   page.settings = settings;
@@ -64,31 +74,49 @@ function configure(settings, scene) {
 }
 
 view.afterDraw.push((state) => {
-  if (!state || !link.ready || silent()) return; // an old state drawn again is not news
+  if (!state || !link.ready || (fitness.good && silent())) return; // an old state drawn again is not news
   panel.show(state, link.operator);
-  stick.seen = state.t;
+  panel.up(state.forward - view.up);
   page.drawn = { ack: state.ack, operator: state.operator, at: performance.now() };
 });
 view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
+
+// How late things are, and whether one may drive by that.
 setInterval(() => {
-  if (link.ready && silent()) panel.down(page.state?.verdict === "ending" ? "The robot side has ended." : "The robot side is silent.");
-}, 100);
+  if (!link.ready) return;
+  const now = performance.now();
+  const late = link.delay.late(now);
+  const good = fitness.look(late, now);
+  panel.late(late, good);
+  stick.bar(good ? "" : panel.viewOnly);
+  if (good && silent()) panel.down(page.state?.verdict === "ending" ? "The robot side has ended." : "The robot side is silent.");
+  else if (!good && page.state) panel.show(page.state, link.operator);
+}, LOOK_MS);
 
 async function ask(what) {
   const answer = await link.ask(what);
-  if (!answer.done) panel.tell("Not done", answer.reason);
+  if (!answer.done) panel.tell(answer.late ? "No answer" : "Not done", answer.reason);
   return answer;
 }
 const buttons = {
-  // A stop is asked for again until the robot side confirms it, across lost connections too.
+  // A stop is asked for again until the robot side confirms it, by its answer or its state, across lost connections too.
   async stop() {
     stick.release();
     if (page.stopping) return;
     page.stopping = true;
-    while (!(await ask("stop")).done) await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
+    const before = page.state?.t ?? 0;
+    const stopped = () => page.state?.stopped && page.state.t > before;
+    while (!(await link.ask("stop")).done && !stopped()) {
+      panel.tell("Stop", "Not confirmed yet. Asking again.");
+      await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
+    }
     page.stopping = false;
   },
-  arm: () => ask("arm").then(() => $("pad").focus({ preventScroll: true })),
+  async arm() {
+    if (stick.barred) return panel.tell("Not done", stick.barred);
+    await ask("arm");
+    $("pad").focus({ preventScroll: true });
+  },
   reset: () => ask("reset"),
   async restart() {
     if (page.state?.armed && !(await ask("disarm")).done) return;
@@ -101,19 +129,28 @@ const buttons = {
     view.setFollow(true);
   },
   follow: () => view.setFollow(!view.follow),
+  // The picture and what the stick means change together: up stays up.
+  async turn() {
+    const turns = !view.turns;
+    const frame = turns ? "hand" : "world";
+    if (page.settings.frame !== frame && !(await ask(`frame ${frame}`)).done) return;
+    view.setTurns(turns);
+  },
   clear: () => view.clear(),
   zoom: (factor) => view.zoom(factor),
 };
-for (const id of ["stop", "arm", "reset", "restart", "follow", "clear"]) $(id).addEventListener("click", () => buttons[id]());
+attachStop($("stop"), buttons.stop);
+for (const id of ["arm", "reset", "restart", "follow", "turn", "clear"]) $(id).addEventListener("click", () => buttons[id]());
 $("zoom-in").addEventListener("click", () => view.zoom(1.25));
 $("zoom-out").addEventListener("click", () => view.zoom(0.8));
 $("theme").addEventListener("click", toggleTheme);
 view.onFollow = (on) => $("follow").setAttribute("aria-pressed", on);
+view.onTurns = (on) => $("turn").setAttribute("aria-pressed", on);
 
 attachPad(stick, $("pad"));
 attachKeys(stick, buttons);
-attachGamepad(stick, buttons);
-stick.listeners.push((now) => panel.stick(now));
+const gamepads = new Gamepads(stick, buttons);
+new Inputs(stick, gamepads);
 
-window.overreach = { page, link, stick, view, plots, buttons };
+window.overreach = { page, link, stick, view, plots, buttons, gamepads, fitness };
 document.documentElement.dataset.ready = "true";

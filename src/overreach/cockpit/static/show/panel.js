@@ -16,6 +16,8 @@ export class Panel {
   constructor() {
     this.told = 0;
     this.until = 0;
+    this.viewOnly = ""; // why nobody drives from here
+    this.delay = 0;
     this.shares = [...document.querySelectorAll(".share")].map((row) => ({
       name: row.dataset.share, bar: row.querySelector(".bar"), fill: row.querySelector("i"),
       who: row.querySelector(".who"), value: row.querySelector(".value"),
@@ -37,7 +39,8 @@ export class Panel {
     }
     const part = s.scale > 0 && s.scale < 0.995 && s.look !== "stop" ? ` (× ${s.scale.toFixed(2)})` : "";
     if (now > this.until) {
-      if (s.armed && !mine) this.say("warn", "Watching", "Another page has armed the robot. Arm takes over when it rests.");
+      if (this.viewOnly && !s.stopped) this.say("warn", "View only", this.viewOnly);
+      else if (s.armed && !mine) this.say("warn", "Watching", "Another page has armed the robot. Arm takes over when it rests.");
       else this.say(s.look, s.word, s.sentence + part);
     }
     for (const { name, bar, fill, who, value } of this.shares) {
@@ -50,10 +53,10 @@ export class Panel {
       put(who, word);
       who.dataset.who = word;
     }
-    $("arm").disabled = mine || s.stopped;
+    $("arm").disabled = mine || s.stopped || Boolean(this.viewOnly);
     $("reset").disabled = !s.stopped;
     $("pad").dataset.armed = mine;
-    const hint = s.stopped ? "Press Reset, then Arm" : !mine ? "Press Arm, then drag" : "";
+    const hint = s.stopped ? "Press Reset, then Arm" : this.viewOnly ? "View only" : !mine ? "Press Arm, then drag" : "";
     $("pad-hint").hidden = !hint;
     put($("pad-hint"), hint);
   }
@@ -82,6 +85,23 @@ export class Panel {
     $("verdict").title = reason; // in full, for when the window is too narrow for it
   }
 
+  // How late what is seen, or what is said, is now [ms], and whether one may drive by that.
+  late(ms, good) {
+    this.viewOnly = good ? "" : `${ms.toFixed(0)} ms late: nobody drives from here until it is better.`;
+    const now = performance.now();
+    if (now - this.delay < NUMBERS_MS) return;
+    this.delay = now;
+    put($("r-delay"), `${ms.toFixed(0)} ms`);
+  }
+
+  // Where the stick's "up" goes in the picture [rad], counter-clockwise from up.
+  up(angle) {
+    const turn = (-angle * 180) / Math.PI;
+    if (Math.abs(turn - this.turn) < 0.2) return;
+    this.turn = turn;
+    $("pad-up").setAttribute("transform", `rotate(${turn.toFixed(1)})`);
+  }
+
   down(reason) {
     this.say("stop", "No connection", reason);
     for (const id of ["arm", "reset"]) $(id).disabled = true;
@@ -92,6 +112,8 @@ export class Panel {
   // What the two axes of the pad mean: forward and leftward along the ground, or forward and turning.
   axes([, leftward]) {
     const turns = leftward === "w_z";
+    const ways = turns ? "forward and back. Left and right: turn" : "up and down in the picture. Left and right: left and right";
+    $("pad").setAttribute("aria-label", `Pad: drag to move the hand. Up and down: ${ways}. Or the arrow keys, W A S D, or a gamepad.`);
     $("axis-v").innerHTML = turns ? "v<sub>c</sub>" : "v<sub>x</sub>";
     $("axis-w").innerHTML = turns ? "ω<sub>c</sub>" : "v<sub>y</sub>";
     $("unit-w").textContent = turns ? "rad/s" : "m/s";

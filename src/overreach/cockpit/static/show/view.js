@@ -1,5 +1,5 @@
-// The top view. World x points up and y to the left, as a robot that has just started stands: up on the
-// pad is up on the screen. Drawn only when something has changed.
+// The top view: fixed, with the world's x up and y to the left, or turning, with the hand's direction up.
+// Drawn only when something has changed.
 
 import { colour, onTheme } from "./theme.js";
 
@@ -10,9 +10,13 @@ const NAMES = ["ink", "muted", "line", "grid", "grid-major", "arm", "base", "han
 export class View {
   constructor(canvas) {
     this.canvas = canvas;
+    this.needle = document.getElementById("needle");
     this.paint = canvas.getContext("2d", { alpha: false }); // opaque: nothing behind it is blended in
     this.scale = 150; // [px/m]
     this.centre = { x: 0.3, y: 0 };
+    this.up = 0; // what is up in the picture: an angle in the world [rad]
+    this.settled = true;
+    this.turns = false; // whether that is where the hand points
     this.follow = true;
     this.trails = { hand: [], base: [] };
     this.dirty = true;
@@ -81,6 +85,13 @@ export class View {
     this.dirty = true;
   }
 
+  setTurns(on) {
+    this.turns = on;
+    this.settled = false;
+    this.onTurns?.(on);
+    this.dirty = true;
+  }
+
   setFollow(on) {
     this.follow = on;
     this.onFollow?.(on);
@@ -106,8 +117,10 @@ export class View {
       else if (event.pointerType !== "touch") {
         if (this.follow) this.setFollow(false);
         this.canvas.classList.add("dragged");
-        this.centre.y += (now[0] - was[0]) / this.scale;
-        this.centre.x += (now[1] - was[1]) / this.scale;
+        const [left, down] = [(now[0] - was[0]) / this.scale, (now[1] - was[1]) / this.scale];
+        const [c, s] = [Math.cos(this.up), Math.sin(this.up)];
+        this.centre.x += down * c - left * s;
+        this.centre.y += down * s + left * c;
         this.dirty = true;
       }
       fingers.set(event.pointerId, now);
@@ -123,11 +136,14 @@ export class View {
   step(at) {
     const dt = Math.min(0.1, (at - (this.at ?? at)) / 1000);
     this.at = at;
+    this.turn(dt);
     if (this.follow && this.state) {
       const { pose, hand } = this.state;
+      const [ahead, aside] = [(this.free.y - this.h / 2) / this.scale, (this.free.x - this.w / 2) / this.scale];
+      const [c, s] = [Math.cos(this.up), Math.sin(this.up)];
       const goal = {
-        x: 0.5 * (pose.x + hand[0]) + (this.free.y - this.h / 2) / this.scale,
-        y: 0.5 * (pose.y + hand[1]) + (this.free.x - this.w / 2) / this.scale,
+        x: 0.5 * (pose.x + hand[0]) + ahead * c - aside * s,
+        y: 0.5 * (pose.y + hand[1]) + ahead * s + aside * c,
       };
       const part = 1 - Math.exp(-dt / 0.25);
       const [dx, dy] = [goal.x - this.centre.x, goal.y - this.centre.y];
@@ -146,8 +162,32 @@ export class View {
     for (const done of this.afterFrame) done(at);
   }
 
+  // Turn the picture to its up: with the hand exactly, and on a change of mind within a moment.
+  turn(dt) {
+    const goal = this.turns && this.state ? this.state.theta_e : 0;
+    const off = Math.atan2(Math.sin(goal - this.up), Math.cos(goal - this.up));
+    if (this.settled && (this.turns || off === 0)) {
+      if (off !== 0) this.dirty = true;
+      this.up = goal;
+    } else {
+      const part = 1 - Math.exp(-dt / 0.08);
+      this.settled = Math.abs(off) < 0.01;
+      this.up = this.settled ? goal : this.up + off * part;
+      this.dirty = true;
+    }
+    const turned = `rotate(${((this.up * 180) / Math.PI).toFixed(1)})`;
+    if (turned !== this.turned) this.needle.setAttribute("transform", (this.turned = turned));
+  }
+
   px(x, y) {
-    return [this.w / 2 - (y - this.centre.y) * this.scale, this.h / 2 - (x - this.centre.x) * this.scale];
+    const [dx, dy] = [(x - this.centre.x) * this.scale, (y - this.centre.y) * this.scale];
+    const [c, s] = [Math.cos(this.up), Math.sin(this.up)];
+    return [this.w / 2 - (dy * c - dx * s), this.h / 2 - (dx * c + dy * s)];
+  }
+
+  // The angle on the screen, clockwise from the right, of a direction in the world.
+  onScreen(angle) {
+    return this.up - angle - Math.PI / 2;
   }
 
   draw() {
@@ -174,29 +214,31 @@ export class View {
       g.lineTo(...to);
       g.stroke();
     };
-    const halfX = this.h / 2 / this.scale;
-    const halfY = this.w / 2 / this.scale;
+    const reach = Math.hypot(this.w, this.h) / 2 / this.scale; // lines long enough for any turn
+    const crisp = (point) => (this.up === 0 ? point.map((one) => Math.round(one) + 0.5) : point);
     g.lineWidth = 1;
-    for (let k = Math.ceil((this.centre.y - halfY) / step); k * step <= this.centre.y + halfY; k++) {
-      g.strokeStyle = k % 4 === 0 ? this.c["grid-major"] : this.c.grid;
-      const x = Math.round(this.px(0, k * step)[0]) + 0.5;
-      line([x, 0], [x, this.h]);
+    for (const [across, along] of [["y", "x"], ["x", "y"]]) {
+      const { [across]: middle, [along]: centre } = this.centre;
+      for (let k = Math.ceil((middle - reach) / step); k * step <= middle + reach; k++) {
+        g.strokeStyle = k % 4 === 0 ? this.c["grid-major"] : this.c.grid;
+        line(...[-reach, reach].map((far) => {
+          const point = { [across]: k * step, [along]: centre + far };
+          return crisp(this.px(point.x, point.y));
+        }));
+      }
     }
-    for (let k = Math.ceil((this.centre.x - halfX) / step); k * step <= this.centre.x + halfX; k++) {
-      g.strokeStyle = k % 4 === 0 ? this.c["grid-major"] : this.c.grid;
-      const y = Math.round(this.px(k * step, 0)[1]) + 0.5;
-      line([0, y], [this.w, y]);
-    }
-    // Where the world begins: x up, y to the left.
-    const [ox, oy] = this.px(0, 0);
+    // Where the world begins.
     g.lineWidth = 2;
     g.fillStyle = g.strokeStyle = this.c.muted;
     g.font = "11px system-ui, sans-serif";
     g.textAlign = "center";
-    line([ox, oy], [ox, oy - 26]);
-    line([ox, oy], [ox - 26, oy]);
-    g.fillText("x", ox, oy - 31);
-    g.fillText("y", ox - 33, oy + 4);
+    g.textBaseline = "middle";
+    const pixel = 1 / this.scale;
+    for (const [name, x, y] of [["x", 1, 0], ["y", 0, 1]]) {
+      line(this.px(0, 0), this.px(26 * x * pixel, 26 * y * pixel));
+      g.fillText(name, ...this.px(34 * x * pixel, 34 * y * pixel));
+    }
+    g.textBaseline = "alphabetic";
     // Scale.
     const length = step * 4 * this.scale < this.w / 3 ? step * 4 : step;
     const [sx, sy] = [16, this.h - 16];
@@ -232,7 +274,7 @@ export class View {
     const { x, y, heading } = this.state.pose;
     g.save();
     g.translate(...this.px(x, y));
-    g.rotate(-heading - Math.PI / 2);
+    g.rotate(this.onScreen(heading));
     g.scale(this.scale, -this.scale);
   }
 
@@ -269,7 +311,7 @@ export class View {
     const [length, width] = this.scene.footprint.map((side) => side * this.scale);
     g.save();
     g.translate(...this.px(x, y));
-    g.rotate(-heading - Math.PI / 2); // from here on x is the base's x axis, y to its right
+    g.rotate(this.onScreen(heading)); // from here on x is the base's x axis, y to its right
     g.fillStyle = this.c.base;
     for (const side of [-1, 1]) {
       g.beginPath();
@@ -326,7 +368,7 @@ export class View {
     const [x, y] = this.px(x_e, y_e);
     g.save();
     g.translate(x, y);
-    g.rotate(-s.theta_e - Math.PI / 2);
+    g.rotate(this.onScreen(s.theta_e));
     g.strokeStyle = this.c.hand;
     g.lineWidth = Math.max(2.5, 0.024 * this.scale);
     g.lineCap = "round";

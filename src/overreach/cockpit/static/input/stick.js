@@ -1,0 +1,121 @@
+// One stick from many inputs (pad, keys, gamepad). The input that took hold last keeps it until it lets go.
+// While held it sends a heartbeat, so that silence means loss; press and release are sent at once, everything else at
+// most 60 times a second and only while few messages are on their way: what waits is the newest, never a queue.
+
+import { factor, USUAL_EXPO } from "./curve.js";
+
+const HEARTBEAT_MS = 33;
+const APART_MS = 1000 / 60;
+const AWAY_MOST = 3; // messages on their way
+const AGAIN_MS = [20, 60]; // a release is said again
+
+export class Stick {
+  constructor(link) {
+    this.link = link;
+    this.frame = "hand"; // sent with every message: what the two axes mean
+    this.axes = ["v_x", "w_z"]; // forward, leftward: parts of the twist in that frame
+    this.most = { v_x: 0, v_y: 0, w_z: 0 }; // at full deflection
+    this.expo = USUAL_EXPO;
+    this.barred = ""; // why nobody may take hold from here
+    this.grip = 0;
+    this.holder = null;
+    this.x = 0; // right, -1 to 1: where it is
+    this.y = 0; // up, -1 to 1
+    this.curved = false; // whether the curve is applied to it
+    this.last = 0;
+    this.due = false;
+    this.listeners = []; // called with the stick when it has changed
+    this.lost = []; // called with the reason when a hold was ended by doubt
+    setInterval(() => this.pump(), HEARTBEAT_MS / 2);
+    for (const event of ["blur", "pagehide", "freeze", "offline"]) window.addEventListener(event, () => this.release());
+    document.addEventListener("visibilitychange", () => document.hidden && this.release());
+  }
+
+  get held() {
+    return this.holder !== null;
+  }
+  get seq() {
+    return this.link.seq;
+  }
+  // What is asked for along the two axes; left is positive, and turns counter-clockwise.
+  get forward() {
+    return this.y * this.scale * this.most[this.axes[0]];
+  }
+  get leftward() {
+    return -this.x * this.scale * this.most[this.axes[1]];
+  }
+  get scale() {
+    return this.curved ? factor(Math.hypot(this.x, this.y), this.expo) : 1;
+  }
+  get twist() {
+    return { [this.axes[0]]: brief(this.forward), [this.axes[1]]: brief(this.leftward) };
+  }
+
+  // Take hold; returns whether that was allowed. curved: for a stick that can stand anywhere, unlike keys.
+  press(holder, x = 0, y = 0, curved = true) {
+    if (this.barred) {
+      for (const listener of this.lost) listener(this.barred);
+      return false;
+    }
+    this.holder = holder;
+    this.grip += 1;
+    this.curved = curved;
+    this.put(x, y);
+    this.say(true);
+    return true;
+  }
+
+  move(holder, x, y) {
+    if (this.holder !== holder) return;
+    this.put(x, y);
+    this.say();
+  }
+
+  put(x, y) {
+    const size = Math.max(1, Math.hypot(x, y));
+    this.x = x / size;
+    this.y = y / size;
+  }
+
+  // Let go. doubt: why, where it was not the operator's own doing.
+  release(holder = this.holder, doubt = "") {
+    if (this.holder === null || this.holder !== holder) return;
+    this.holder = null;
+    this.x = this.y = 0;
+    this.say(true);
+    for (const ms of AGAIN_MS) setTimeout(() => !this.held && this.say(), ms);
+    if (doubt) for (const listener of this.lost) listener(doubt);
+  }
+
+  // Nobody may take hold, for this reason; "" lifts it.
+  bar(reason) {
+    this.barred = reason;
+    if (reason) this.release();
+  }
+
+  say(now = false) {
+    this.due = true;
+    for (const listener of this.listeners) listener(this);
+    if (now) this.send();
+    else this.pump();
+  }
+
+  // Send what is due as soon as it may go.
+  pump() {
+    const since = performance.now() - this.last;
+    if (this.held && since >= HEARTBEAT_MS - 4) this.due = true;
+    if (!this.due || this.link.away >= AWAY_MOST) return;
+    if (since >= APART_MS - 0.5) this.send();
+    else this.timer ??= setTimeout(() => this.pump((this.timer = null)), APART_MS - since);
+  }
+
+  send() {
+    this.due = false;
+    this.last = performance.now();
+    const { grip, held, twist, frame } = this;
+    const seen = this.link.t;
+    this.link.sendNumbered({ type: "command", grip, held, twist, frame, seen });
+  }
+}
+
+const brief = (value) => Math.round(value * 1e6) / 1e6; // a thin link carries every digit
