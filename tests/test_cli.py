@@ -138,3 +138,25 @@ def test_version() -> None:
     from overreach import __version__
 
     assert overreach("--version").stdout.strip() == f"overreach {__version__}"
+
+
+@pytest.mark.parametrize("arguments", [["laws"], ["--help"], ["simulate", "outward", "--json"], ["simulate", "--help"]])
+def test_output_that_is_cut_off_ends_quietly(arguments: list[str]) -> None:
+    """Where the reader of a pipe has gone, as with `| head`, a command ends without a word."""
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "overreach", *arguments],
+        stdout=write, stderr=subprocess.PIPE, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize("name", ["", "http://robot", "robot:80", "ro bot", "-robot", "*", "a" * 300])
+def test_a_host_name_that_is_none(name: str) -> None:
+    """`--allow-host` takes a machine's name alone."""
+    done = overreach("drive", "--no-browser", f"--allow-host={name}")
+    assert done.returncode == 2
+    assert done.stderr.startswith("overreach: --allow-host must be a machine's name alone, such as robot.local")
+    assert done.stderr.count("\n") == 1

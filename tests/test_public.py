@@ -44,7 +44,7 @@ ARROWS: dict[str, set[str]] = {
         "errors", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law", "plugs", "control",
         "robots", "link",
     },
-    "cockpit": {"errors", "requests", "types", "parameters", "plugs", "robots", "link", "robot_side"},
+    "cockpit": {"errors", "clock", "requests", "types", "parameters", "plugs", "robots", "link", "robot_side"},
     "run": {
         "errors", "verdicts", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law", "plugs",
         "control", "robots",

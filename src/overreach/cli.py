@@ -5,6 +5,7 @@ Help does not import the typed commands: their library takes longer to import th
 
 from __future__ import annotations
 
+import os
 import sys
 
 from overreach import __version__
@@ -29,10 +30,24 @@ overreach {__version__}: drive a whole mobile manipulator by its hand.
 Add --help to any command for its options.
 """
 
+CUT_OFF = 141
+"""Exit code of a command whose output was cut off: as if SIGPIPE had ended it."""
+
 
 def main() -> None:
     """Entry point of `overreach`. Exit code 2 for a value that cannot be used, with one line that says why."""
-    arguments = sys.argv[1:]
+    try:
+        try:
+            _run(sys.argv[1:])
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except BrokenPipeError:  # whoever read our output has gone, as `head` does: that is no error of ours
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise SystemExit(CUT_OFF) from None
+
+
+def _run(arguments: list[str]) -> None:
     if arguments in ([], ["help"], ["--help"], ["-h"]):
         print(HELP, end="")
         return

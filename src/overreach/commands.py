@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from overreach.parameters import Parameters
 
 app = SubcommandApp()
+Repeated = Annotated[tuple[str, ...], tyro.conf.UseAppendAction]
 
 
 @app.command
@@ -19,6 +20,7 @@ def drive(
     robot: Annotated[str, tyro.conf.Positional] = "planar",
     port: int | None = None,
     host: str = "127.0.0.1",
+    allow_host: Repeated = (),
     rate: float = 200.0,
     browser: bool = True,
     law: str = "exact",
@@ -30,6 +32,7 @@ def drive(
         robot: Name of the robot (see `overreach robots`).
         port: Port of the page; by default 8420, or a free one where that is taken.
         host: Address the page is served at. Anyone who can reach it can drive the robot.
+        allow_host: A further name of this machine, such as robot.local, that the page may be opened by; repeatable.
         rate: Rate of the control loop [Hz], 50 to 1000.
         browser: Whether to open a browser.
         law: Name of the law it starts with (see `overreach laws`).
@@ -37,7 +40,7 @@ def drive(
     """
     from overreach.cockpit.drive import run_drive
 
-    run_drive(robot, host, port, rate, browser, law, set)
+    run_drive(robot, host, port, rate, browser, law, set, allow_host)
 
 
 @app.command
@@ -74,6 +77,7 @@ def cockpit(
     robot: str = "",
     port: int | None = None,
     host: str = "127.0.0.1",
+    allow_host: Repeated = (),
     browser: bool = True,
 ) -> None:
     """Run the operator side: the page, connected to a robot side.
@@ -83,11 +87,12 @@ def cockpit(
         robot: Name of the robot in the network, if there are several.
         port: Port of the page; by default 8420, or a free one where that is taken.
         host: Address the page is served at. Anyone who can reach it can drive the robot.
+        allow_host: A further name of this machine, such as robot.local, that the page may be opened by; repeatable.
         browser: Whether to open a browser.
     """
     from overreach.cockpit.drive import run_cockpit
 
-    run_cockpit(connect, host, port, browser, robot)
+    run_cockpit(connect, host, port, browser, robot, allow_host)
 
 
 @app.command

@@ -42,9 +42,10 @@ class Cockpit:
 
 
 @contextmanager
-def running_cockpit(env: dict[str, str] | None = None) -> Iterator[Cockpit]:
+def running_cockpit(env: dict[str, str] | None = None, *arguments: str) -> Iterator[Cockpit]:
     with robot(env=env) as (endpoint, side, observer):
-        with half("cockpit", "--connect", endpoint, "--no-browser", "--port", str(free_port())) as running:
+        port = str(free_port())
+        with half("cockpit", "--connect", endpoint, "--no-browser", "--port", port, *arguments) as running:
             yield Cockpit(running.url(), running, side, observer, [], [])
 
 
@@ -57,7 +58,7 @@ def fresh_cockpit() -> Iterator[Cockpit]:
 
 @pytest.fixture(scope="session")
 def shared_cockpit() -> Iterator[Cockpit]:
-    with running_cockpit() as cockpit:
+    with running_cockpit(None, "--allow-host", "rover.local", "--allow-host", "Rover") as cockpit:
         yield cockpit
 
 

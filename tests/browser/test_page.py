@@ -254,6 +254,40 @@ def test_foreign_hosts_get_nothing(cockpit: Cockpit) -> None:
     assert upgrade(cockpit.url, {"Origin": "http://evil.example"}, "/_nicegui_ws/socket.io/?transport=websocket") == 403
 
 
+@pytest.mark.parametrize("host", ["rover.local", "ROVER.local.", "rover", "localhost", "127.0.0.1", "[::1]"])
+def test_names_that_are_allowed(cockpit: Cockpit, host: str) -> None:
+    """Under the names that it was told are its own, in any spelling, the page and its WebSocket are served."""
+    port = cockpit.url.rpartition(":")[2]
+    connection = http.client.HTTPConnection(cockpit.url.removeprefix("http://"), timeout=10)
+    connection.request("GET", "/static/main.js", headers={"Host": f"{host}:{port}"})
+    assert connection.getresponse().status == 200
+    connection.close()
+    assert upgrade(cockpit.url, {"Origin": f"http://{host}:{port}", "Host": f"{host}:{port}"}) == 101
+
+
+@pytest.mark.parametrize(
+    ("host", "option"),
+    [
+        ("rover2.local:8420", "--allow-host rover2.local"),
+        ("rover.local.evil.example", "--allow-host rover.local.evil.example"),
+        ("<script>alert(1)</script>", "--allow-host NAME"),
+        ("", "--allow-host NAME"),
+    ],
+)
+def test_a_foreign_name_is_told_the_option(cockpit: Cockpit, host: str, option: str) -> None:
+    """The page of the refusal says which option to use, and runs nothing of what it was asked for as."""
+    connection = http.client.HTTPConnection(cockpit.url.removeprefix("http://"), timeout=10)
+    connection.putrequest("GET", "/", skip_host=True)
+    connection.putheader("Host", host)
+    connection.endheaders()
+    answer = connection.getresponse()
+    text = answer.read().decode()
+    connection.close()
+    assert answer.status == 403
+    assert option in text
+    assert "<script" not in text
+
+
 def upgrade(url: str, headers: dict[str, str], path: str = "/ws") -> int:
     """Ask for a WebSocket and return the status of the answer."""
     connection = http.client.HTTPConnection(url.removeprefix("http://"), timeout=10)

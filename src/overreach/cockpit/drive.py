@@ -92,12 +92,20 @@ def robot_process(robot: str, rate: float, law: Sequence[str] = ()) -> Iterator[
 
 
 def run_drive(
-    robot: str, host: str, port: int | None, rate: float, browser: bool, law: str = "exact", changes: Sequence[str] = ()
+    robot: str,
+    host: str,
+    port: int | None,
+    rate: float,
+    browser: bool,
+    law: str = "exact",
+    changes: Sequence[str] = (),
+    allowed: Sequence[str] = (),
 ) -> None:
     """Run both halves until Ctrl-C or SIGTERM, or until one of them ends.
 
-    changes: parameters of the law, NAME=VALUE.
+    changes: parameters of the law, NAME=VALUE; allowed: further names that the page is served under.
     """
+    from overreach.cockpit.origin import check_host_name
     from overreach.parameters import assignments
     from overreach.plugs import load_law
     from overreach.robot_side.process import check_rate
@@ -106,28 +114,36 @@ def run_drive(
     check_robot_name(robot)
     check_rate(rate)
     load_law(law, assignments(changes))
+    hosts = [host, *map(check_host_name, allowed)]
     _exit_on_signals()
     given = ["--law", law, *(["--set", *changes] if changes else [])]
     with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate, given) as (endpoint, process):
-        _operate(endpoint, page, host, browser, lambda: process.poll() is not None)
+        _operate(endpoint, page, hosts, browser, lambda: process.poll() is not None)
         if process.poll() is not None:
             raise LinkError(f"the robot side has ended by itself (exit code {process.returncode}); so has the page")
 
 
-def run_cockpit(connect: str, host: str, port: int | None, browser: bool, robot: str = "") -> None:
-    """Run the operator side alone, for a robot side that is already running; `robot`: its name if there are several."""
+def run_cockpit(
+    connect: str, host: str, port: int | None, browser: bool, robot: str = "", allowed: Sequence[str] = ()
+) -> None:
+    """Run the operator side alone, for a robot side that is already running.
+
+    robot: its name if there are several; allowed: further names that the page is served under.
+    """
+    from overreach.cockpit.origin import check_host_name
     from overreach.link.messages import check_name
 
     endpoint = check_endpoint(connect)
     if robot:
         check_name(robot)
+    hosts = [host, *map(check_host_name, allowed)]
     _exit_on_signals()
     with contextlib.closing(bind_page(host, port)) as page:
-        _operate(endpoint, page, host, browser, lambda: False, robot)
+        _operate(endpoint, page, hosts, browser, lambda: False, robot)
 
 
 def _operate(
-    endpoint: str, page: socket.socket, host: str, browser: bool, lost: Callable[[], bool], robot: str = ""
+    endpoint: str, page: socket.socket, hosts: Sequence[str], browser: bool, lost: Callable[[], bool], robot: str = ""
 ) -> None:
     # Imported while the robot side starts: the page's library takes the longest.
     from overreach.cockpit.relay import Relay
@@ -137,6 +153,7 @@ def _operate(
     link = OperatorEnd(endpoint, robot)
     try:
         relay = Relay(link, link.welcome(ROBOT_WAIT_S, lost))
+        host = hosts[0]
         shown = "127.0.0.1" if host in ("0.0.0.0", "::") else host
         port = page.getsockname()[1]
         address = f"http://[{shown}]:{port}" if ":" in shown else f"http://{shown}:{port}"
@@ -146,6 +163,6 @@ def _operate(
             if browser and has_browser():
                 webbrowser.open(address)
 
-        serve(relay, page, host, ready, lost)
+        serve(relay, page, hosts, ready, lost)
     finally:
         link.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -22,9 +22,9 @@ WATCH_S = 0.1
 
 
 def serve(
-    relay: Relay, bound: socket.socket, host: str, on_ready: Callable[[], None], lost: Callable[[], bool]
+    relay: Relay, bound: socket.socket, hosts: Sequence[str], on_ready: Callable[[], None], lost: Callable[[], bool]
 ) -> None:
-    """Serve until a signal comes or `lost()` says that the robot side has ended."""
+    """Serve, under the names `hosts`, until a signal comes or `lost()` says that the robot side has ended."""
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
@@ -48,7 +48,7 @@ def serve(
         await websocket.accept()
         await relay.serve(websocket)
 
-    app.add_middleware(OwnPagesOnly, host=host)
+    app.add_middleware(OwnPagesOnly, hosts=hosts)
     app.mount("/static", StaticFiles(directory=STATIC))
     ui.run_with(
         app,

@@ -1,14 +1,4 @@
-"""What a scenario file may say. TOML in, a checked `Scenario` out; every error is one line.
-
-[robot]      name = "planar", l = 0.65, psi = 0.0, shoulder = [0.0, 0.0], mount_yaw = 0.0,
-             delay_s, lag_s, noise, seed (of the actuators and encoders; all 0)
-[workspace]  l_min, l_max, psi_min, psi_max
-[law]        blend = "tanh"|"smoothstep"|"step", and its parameters: alpha, beta (tanh), q_l, q_psi (smoothstep)
-[law.NAME]   parameters of the law NAME, where the scenario is run with it: [law.weighted] base_weight = 2.0
-[command]    duration, dt, frame, and either segments = [{t, v_c, w_c}, ...] or file = "x.csv" (t,v_c,w_c)
-[dither]     l, psi, f: a tremor added to the command, as swings of the hand [m, rad] at f [Hz]
-[limits]     v_c, w_c, dv_c, dw_c: without this table nothing is limited, to show the law alone
-"""
+"""A scenario that can be run, from a built-in name or a TOML file (see `tables`); every error is one line."""
 
 from __future__ import annotations
 
@@ -16,12 +6,9 @@ import bisect
 import importlib.resources
 import math
 import os
-import tomllib
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
-
-import msgspec
 
 from overreach.arm.mount import Mount
 from overreach.errors import ScenarioError, UnknownNameError
@@ -31,72 +18,16 @@ from overreach.model.model import Model, check_reach, check_workspace
 from overreach.model.workspace import Workspace
 from overreach.plugs import load_model
 from overreach.robots.imperfect import Imperfection
-from overreach.run.command import FASTEST, Segment, read_commands
+from overreach.run.command import FASTEST, read_commands
 from overreach.run.law_table import read_law
+from overreach.run.stamps import Segment, fitted
+from overreach.run.tables import CommandTable, Dither, Tables, read_tables
+from overreach.run.text import read_text
 from overreach.types import Frame, Record
 
 LONGEST_S = 1e6
 MOST_STEPS = 20_000_000
 """Longest run: 20,000 s at 1 ms. Above this, dt is more likely mistyped than meant."""
-
-
-class RobotTable(Record, frozen=True):
-    """The table [robot]: l [m], psi [rad] of the hand at the start, shoulder [m], mount_yaw [rad]."""
-
-    name: str = "planar"
-    l: float | None = None
-    psi: float | None = None
-    shoulder: tuple[float, float] | None = None
-    mount_yaw: float | None = None
-    delay_s: float = 0.0
-    lag_s: float = 0.0
-    noise: float = 0.0
-    seed: int = 0
-
-
-class WorkspaceTable(Record, frozen=True):
-    """The table [workspace]; a limit that is left out is the robot's own."""
-
-    l_min: float | None = None
-    l_max: float | None = None
-    psi_min: float | None = None
-    psi_max: float | None = None
-
-
-class CommandTable(Record, frozen=True):
-    """The table [command]."""
-
-    duration: float
-    dt: float = 0.001
-    frame: Frame | None = None
-    segments: tuple[Segment, ...] | None = None
-    file: str | None = None
-
-
-class Dither(Record, frozen=True):
-    """The table [dither]: a tremor that makes l and psi swing by +-l [m] and +-psi [rad] at f [Hz]."""
-
-    l: float = 0.0
-    psi: float = 0.0
-    f: float = 1.0
-
-    def at(self, t: float) -> tuple[float, float]:
-        """Return what it adds to (v_c, w_c) at `t` [s]: 2 pi f a cos(2 pi f t)."""
-        rate = 2.0 * math.pi * self.f
-        swing = rate * math.cos(rate * t)
-        return self.l * swing, self.psi * swing
-
-
-class Tables(Record, frozen=True):
-    """A scenario file, table by table."""
-
-    command: CommandTable
-    description: str = ""
-    robot: RobotTable = RobotTable()
-    workspace: WorkspaceTable = WorkspaceTable()
-    law: dict[str, Any] = {}
-    dither: Dither = Dither()
-    limits: Limits | None = None
 
 
 class Scenario(Record, frozen=True):
@@ -155,7 +86,7 @@ def load_scenario(which: str | os.PathLike[str]) -> Scenario:
         return parse_scenario(builtin[name], name)
     path = Path(name)
     try:
-        text = path.read_text("utf-8")
+        text = read_text(path)
     except FileNotFoundError:
         choices = ", ".join(builtin_scenarios())
         raise ScenarioError(f"no scenario file {name!r}. Built-in scenarios: {choices}.") from None
@@ -166,64 +97,24 @@ def load_scenario(which: str | os.PathLike[str]) -> Scenario:
 
 def parse_scenario(text: str, name: str = "scenario", folder: Path | None = None) -> Scenario:
     """Return the scenario in TOML `text`; `folder` is where its command file is looked for."""
-    try:
-        raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ScenarioError(f"scenario {name!r} is not valid TOML: {error}") from None
-    _check_keys(raw, Tables, "", name)
-    _check_finite(raw, "", name)
-    try:
-        tables = msgspec.convert(raw, Tables)
-    except msgspec.ValidationError as error:
-        raise ScenarioError(f"scenario {name!r}: {_readable(error)}") from None
-    return _assemble(tables, name, folder or Path())
+    return _assemble(read_tables(text, name), name, folder or Path())
 
 
-_TABLES: dict[str, type[msgspec.Struct]] = {
-    "robot": RobotTable,
-    "workspace": WorkspaceTable,
-    "command": CommandTable,
-    "dither": Dither,
-    "limits": Limits,
-    "command.segments": Segment,
-}
-
-
-def _check_keys(table: dict[str, Any], struct: type[msgspec.Struct], where: str, name: str) -> None:
-    """Raise for a key that the table does not have, naming those that it has."""
-    for key, value in table.items():
-        path = f"{where}.{key}" if where else key
-        if key not in struct.__struct_fields__:
-            place = f"in [{where}]" if where else "at the top"
-            raise ScenarioError(f"scenario {name!r}: {UnknownNameError(f'key {place}', key, struct.__struct_fields__)}")
-        inner = _TABLES.get(path)
-        if inner is not None:
-            for entry in value if isinstance(value, list) else [value]:
-                if isinstance(entry, dict):
-                    _check_keys(entry, inner, path, name)
-
-
-def _check_finite(value: Any, where: str, name: str) -> None:
-    """Raise for nan and inf, which TOML allows and a robot does not."""
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ScenarioError(f"scenario {name!r}: {where} must be a finite number, got {value}")
-    if isinstance(value, dict):
-        for key, entry in value.items():
-            _check_finite(entry, f"{where}.{key}" if where else key, name)
-    elif isinstance(value, list):
-        for entry in value:
-            _check_finite(entry, where, name)
-
-
-def _readable(error: msgspec.ValidationError) -> str:
-    """Turn msgspec's `... - at `$.robot.l`` into a place first, then what is wrong."""
-    text, _, place = str(error).partition(" - at `$.")
-    if place.startswith("command.frame"):
-        text += f" (valid: {', '.join(Frame)})"
-    text = text.replace("Expected `object`", "Expected a table").replace(
-        "Object missing required field `command`", "missing required table [command]"
-    )
-    return f"{place.rstrip('`')}: {text}" if place else text
+def _segments(command: CommandTable, dither: Dither, name: str, folder: Path) -> tuple[Segment, ...]:
+    """Return the commands of the table or of its file, with their times from the run's start."""
+    if command.segments == () and dither != Dither():
+        return ()  # a tremor alone
+    if command.file is not None:
+        what, rows = f"command file {command.file!r}", read_commands(folder / command.file, name)
+    else:
+        what, rows = "command.segments", command.segments or ()
+    for number, (earlier, later) in enumerate(pairwise(rows), start=2):
+        if later.t <= earlier.t:
+            raise ScenarioError(
+                f"scenario {name!r}: command.segments: the time {later.t:g} of entry {number} is not after "
+                f"{earlier.t:g} of the one before: the times t must increase from row to row"
+            )
+    return fitted(rows, command.duration, f"scenario {name!r}: {what}", command.time, command.time_unit)
 
 
 def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
@@ -242,12 +133,7 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
         )
     if (command.segments is None) == (command.file is None):
         raise ScenarioError(f"scenario {name!r}: [command] needs either segments or file, one of the two")
-    if command.file is not None:
-        segments = read_commands(folder / command.file, name)
-    else:
-        segments = command.segments or ()
-    if any(later.t <= earlier.t for earlier, later in pairwise(segments)):
-        raise ScenarioError(f"scenario {name!r}: the times t of the commands must increase from row to row")
+    segments = _segments(command, tables.dither, name, folder)
 
     given = load_model(robot.name)
     own = given.workspace
