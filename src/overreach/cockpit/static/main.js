@@ -61,7 +61,7 @@ const link = new Link({
 });
 const stick = new Stick(link);
 link.soon = () => stick.held; // the next command acknowledges the picture
-stick.lost.push((doubt) => panel.tell("Let go", doubt));
+stick.lost.push((why) => panel.tell(why === stick.barred ? "View only" : "Let go", why));
 
 function configure(settings, scene) {
   page.settings = settings;

@@ -7,7 +7,6 @@ const WAYS = {
   ArrowRight: [1, 0], KeyD: [1, 0],
 };
 const SLOW = 0.25;
-const NAMES = { " ": "Space", Spacebar: "Space", Esc: "Escape", Up: "ArrowUp", Down: "ArrowDown", Left: "ArrowLeft", Right: "ArrowRight" };
 
 // A field in which a Space or a letter is written. A list to choose from has a field, too, but only to be found by.
 const writing = (target) => target.closest?.("input:not([readonly]):not([type=range]):not(.q-select__focus-target), textarea, [contenteditable]");
@@ -16,11 +15,9 @@ const writing = (target) => target.closest?.("input:not([readonly]):not([type=ra
 const elsewhere = (target) => target.closest?.("input, textarea, select, [contenteditable], .q-field, .q-slider, [role=slider], [role=listbox]");
 
 // Where a key is; on-screen and remote keyboards say only what it writes.
-const named = (event) => event.code || NAMES[event.key] || (/^[a-z]$/i.test(event.key) ? `Key${event.key.toUpperCase()}` : event.key);
+const named = (event) => event.code || (/^[a-z]$/i.test(event.key) ? `Key${event.key.toUpperCase()}` : event.key);
 
-const isStop = (event) =>
-  [event.code, NAMES[event.key] ?? event.key].includes("Escape") ||
-  ([event.code, NAMES[event.key] ?? event.key].includes("Space") && !writing(event.target));
+const isStop = ({ code, key, target }) => code === "Escape" || key === "Escape" || ((code === "Space" || key === " ") && !writing(target));
 
 export function attachKeys(stick, buttons) {
   const down = new Set();

@@ -1,0 +1,84 @@
+"""A thin link: a TCP relay that passes on only so many bytes a second each way, and loses nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+CHUNK = 512
+BUFFER = 4096
+
+
+class Way:
+    """One direction of the link, shared by all connections."""
+
+    def __init__(self) -> None:
+        self.rate = float("inf")
+        self.passed = 0
+        self._free = 0.0
+        self._lock = threading.Lock()
+
+    def pass_on(self, size: int) -> None:
+        """Take as long as `size` bytes take, after those that came before."""
+        with self._lock:
+            self._free = max(self._free, time.monotonic()) + size / self.rate
+            self.passed += size
+            until = self._free
+        if (wait := until - time.monotonic()) > 0.0:
+            time.sleep(wait)
+
+
+class Narrow:
+    """Listens at `port` and connects to `target`; `up` and `down` [bytes/s] may be changed at any time."""
+
+    def __init__(self, target: int) -> None:
+        self.up, self.down = Way(), Way()
+        self._target = target
+        self._open: list[socket.socket] = []
+        self._listener = socket.socket()
+        self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER)
+        self._listener.bind(("127.0.0.1", 0))
+        self._listener.listen()
+        self.port = self._listener.getsockname()[1]
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self) -> None:
+        with contextlib.suppress(OSError):
+            while True:
+                near, _ = self._listener.accept()
+                far = socket.socket()
+                far.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER)
+                far.connect(("127.0.0.1", self._target))
+                for one in (near, far):
+                    one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                self._open += [near, far]
+                for source, sink, way in ((near, far, self.up), (far, near, self.down)):
+                    threading.Thread(target=self._pump, args=(source, sink, way), daemon=True).start()
+
+    @staticmethod
+    def _pump(source: socket.socket, sink: socket.socket, way: Way) -> None:
+        with contextlib.suppress(OSError):
+            while data := source.recv(CHUNK):
+                way.pass_on(len(data))
+                sink.sendall(data)
+        for one in (source, sink):
+            with contextlib.suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        for one in [self._listener, *self._open]:
+            one.close()
+
+
+@contextmanager
+def narrow(target: int) -> Iterator[Narrow]:
+    """Run a thin link to a local port; as wide as can be until told otherwise."""
+    link = Narrow(target)
+    try:
+        yield link
+    finally:
+        link.close()
