@@ -35,7 +35,15 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
+def debugging_port() -> int:
+    """The port at which the browser takes events faster than Playwright sends them."""
+    from overreach.link.endpoint import free_port
+
+    return free_port()
+
+
+@pytest.fixture(scope="session")
+def browser(debugging_port: int) -> Iterator[Browser]:
     """One Chromium for all tests; without it they are skipped, and in CI they fail."""
     from tests.browser.chromium import chromium
     from tests.browser.install import find
@@ -46,5 +54,5 @@ def browser() -> Iterator[Browser]:
         if os.environ.get("CI") == "true":
             pytest.fail(message)
         pytest.skip(message)
-    with chromium() as running:
+    with chromium(f"--remote-debugging-port={debugging_port}") as running:
         yield running

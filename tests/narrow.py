@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import socket
 import threading
 import time
@@ -10,26 +11,28 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 CHUNK = 512
-BUFFER = 4096
+LOOK_S = 0.01
+BUFFER = 65536
 
 
 class Way:
     """One direction of the link, shared by all connections."""
 
     def __init__(self) -> None:
-        self.rate = float("inf")
+        self.rate = math.inf
         self.passed = 0
-        self._free = 0.0
         self._lock = threading.Lock()
 
     def pass_on(self, size: int) -> None:
         """Take as long as `size` bytes take, after those that came before."""
         with self._lock:
-            self._free = max(self._free, time.monotonic()) + size / self.rate
+            at, left = time.monotonic(), float(size)
+            while left > 0.0 and self.rate < math.inf:
+                time.sleep(min(LOOK_S, left / self.rate))
+                now = time.monotonic()
+                left -= (now - at) * self.rate
+                at = now
             self.passed += size
-            until = self._free
-        if (wait := until - time.monotonic()) > 0.0:
-            time.sleep(wait)
 
 
 class Narrow:

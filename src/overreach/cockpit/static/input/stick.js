@@ -105,8 +105,10 @@ export class Stick {
     const since = performance.now() - this.last;
     if (this.held && since >= HEARTBEAT_MS - 4) this.due = true;
     if (!this.due || this.link.away >= AWAY_MOST) return;
-    if (since >= APART_MS - 0.5) this.send();
-    else this.timer ??= setTimeout(() => this.pump((this.timer = null)), APART_MS - since);
+    // Where answers take long the few are spread evenly: in a burst, the wait for them would be taken for silence.
+    const apart = Math.max(APART_MS, this.link.delay.trip / AWAY_MOST);
+    if (since >= apart - 0.5) this.send();
+    else this.timer ??= setTimeout(() => this.pump((this.timer = null)), apart - since);
   }
 
   send() {

@@ -14,6 +14,7 @@ export class Delay {
     this.away = []; // [seq, sent at] of what is not heard yet, oldest first [ms]
     this.ahead = Infinity; // the robot's time is at most the page's plus this [ms]
     this.at = 0;
+    this.trip = 0; // how long the newest answer took, there and back [ms]
     this.picture = null; // the robot's time of the newest picture [ms]
   }
 
@@ -26,6 +27,7 @@ export class Delay {
     let from = null;
     while (this.away.length && this.away[0][0] <= seq) from = this.away.shift();
     if (from?.[0] !== seq) return;
+    this.trip = at - from[1];
     this.ahead = Math.min(t * 1000 - from[1], this.ahead + DRIFT * (at - this.at));
     this.at = at;
   }

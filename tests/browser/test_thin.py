@@ -1,0 +1,228 @@
+"""Thin and slow links between page and cockpit: what is let go of stops, what is seen is new or says how old it is."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page
+from websockets.sync.client import connect
+
+from tests.browser.conftest import Cockpit
+from tests.browser.hands import arm, middle
+from tests.narrow import Narrow, narrow
+from tests.processes import GENEROUS_S, until
+
+pytestmark = pytest.mark.browser
+LATE_S = 0.5
+STEP_S = 0.1
+"""What the test itself may add to a time: one call into a busy browser."""
+
+LISTEN = """
+    window.words = [];
+    const word = document.getElementById("verdict-word");
+    new MutationObserver(() => words.push(word.textContent))
+        .observe(word, {childList: true, characterData: true, subtree: true});
+"""
+
+
+@pytest.fixture
+def thin(context: BrowserContext, cockpit: Cockpit) -> Iterator[tuple[Page, Narrow]]:
+    """A page that has come through a link which is made thin afterwards; it is wide again at the end."""
+    with narrow(int(cockpit.url.rpartition(":")[2])) as link:
+        own, cockpit.url = cockpit.url, f"http://127.0.0.1:{link.port}"
+        try:
+            page = cockpit.watch(context.new_page())
+        finally:
+            cockpit.url = own
+        page.evaluate(f"void (() => {{ {LISTEN} }})()")
+        yield page, link
+        link.up.rate = link.down.rate = math.inf
+        page.close()
+
+
+def stir(page: Page, seconds: float, look: Callable[[], None] = lambda: None) -> int:
+    """Move the held pointer about, as fast as the browser takes it; return how often."""
+    x, y = middle(page, "#pad")
+    end, moves = time.monotonic() + seconds, 0
+    while time.monotonic() < end:
+        for _ in range(6):
+            moves += 1
+            page.mouse.move(x + 12 * math.sin(moves / 5), y - 62 + 8 * math.cos(moves / 3))
+        look()
+    return moves
+
+
+def press(page: Page) -> None:
+    x, y = middle(page, "#pad")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y - 62)
+
+
+@pytest.mark.parametrize("rate", [4_000.0, 8_000.0, 32_000.0])
+def test_letting_go_through_a_thin_uplink(thin: tuple[Page, Narrow], cockpit: Cockpit, rate: float) -> None:
+    """On 4 to 32 kB/s from page to cockpit, letting go and Stop take `stop_time` and a round trip, not a queue's."""
+    (page, link), observer = thin, cockpit.observer
+    arm(page, observer)
+    link.up.rate = rate
+    round_trip = 4 * 220 / rate  # the messages that may be on their way, and one more
+    press(page)
+    until(lambda: observer.speed() > 0.1, what="motion")
+    slowest: list[float] = []
+    stir(page, 2.0, lambda: slowest.append(observer.speed()))
+    assert min(slowest) > 0.0  # it drives throughout
+    since = time.monotonic()
+    page.mouse.up()
+    assert observer.stop_time(since) <= observer.welcome.stop_time + round_trip + STEP_S
+    press(page)
+    until(lambda: observer.speed() > 0.1, what="motion")
+    stir(page, 0.5)
+    since = time.monotonic()
+    page.keyboard.press("Escape")
+    assert observer.stop_time(since) <= observer.welcome.stop_time + round_trip + STEP_S
+    until(lambda: observer.now.stopped, what="the stop")
+    page.mouse.up()
+    page.wait_for_timeout(500)
+    assert not {"View only", "Not done", "No answer"} & set(page.evaluate("words"))
+
+
+class Mouse:
+    """A mouse of any rate: its events go to the browser one after the other, and nothing waits for them."""
+
+    def __init__(self, port: int, page: Page) -> None:
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/json", timeout=10) as answer:
+            address = next(one["webSocketDebuggerUrl"] for one in json.load(answer) if one["url"].startswith(page.url))
+        self._socket = connect(address)
+        self._id = 0
+
+    def tell(self, kind: str, x: float, y: float, buttons: int) -> None:
+        self._id += 1
+        button = {"button": "left", "buttons": buttons, "clickCount": 1} if kind != "mouseMoved" or buttons else {}
+        event = {"type": kind, "x": x, "y": y, **button}
+        self._socket.send(json.dumps({"id": self._id, "method": "Input.dispatchMouseEvent", "params": event}))
+
+    def done(self) -> None:
+        """Wait until the browser has taken in all of them."""
+        while json.loads(self._socket.recv(GENEROUS_S)).get("id") != self._id:
+            pass
+
+    def close(self) -> None:
+        self._socket.close()
+
+
+def test_at_most_sixty_a_second(browser: Browser, debugging_port: int, cockpit: Cockpit) -> None:
+    """A mouse of 500 Hz: the page sends at most 60 sticks a second, and the newest of them arrives."""
+    observer = cockpit.observer
+    page = cockpit.watch(browser.new_page())
+    arm(page, observer)
+    x, y = middle(page, "#pad")
+    mouse = Mouse(debugging_port, page)
+    mouse.tell("mouseMoved", x, y, 0)
+    mouse.tell("mousePressed", x, y, 1)
+    mouse.done()
+    page.evaluate("window.raw = 0; document.getElementById('pad').addEventListener('pointerrawupdate', () => raw++)")
+    first, since = page.evaluate("overreach.link.seq"), page.evaluate("performance.now()")
+    start = time.monotonic()
+    for k in range(1500):
+        mouse.tell("mouseMoved", x + 20 * math.sin(k / 40), y - 40 - 10 * math.sin(k / 70), 1)
+        time.sleep(max(0.0, start + k / 500 - time.monotonic()))
+    mouse.done()
+    took = (page.evaluate("performance.now()") - since) / 1000
+    sticks = page.evaluate("overreach.link.seq") - first
+    told = page.evaluate("raw") / took
+    assert told > 120.0, f"the pointer told only {told:.0f} times a second"
+    assert sticks <= 60.0 * took + 3
+    assert sticks > 25.0 * took
+    wish = page.evaluate("overreach.stick.forward")
+    until(lambda: observer.now.twist.v_x == pytest.approx(wish, abs=1e-5), 5.0, "the newest")
+    mouse.tell("mouseReleased", x, y, 0)
+    mouse.done()
+    mouse.close()
+    until(lambda: observer.speed() == 0.0, what="the release")
+    page.close()
+
+
+def test_a_thin_downlink_drives(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None:
+    """On 20 kB/s from cockpit to page one drives throughout, by pictures at most 0.5 s old; a stop is told as done."""
+    (page, link), observer = thin, cockpit.observer
+    arm(page, observer)
+    link.down.rate = 20_000.0
+    page.wait_for_timeout(1500)
+    press(page)
+    ages: list[float] = []
+    slowest: list[float] = []
+
+    def look() -> None:
+        t = page.evaluate("overreach.page.state.t")
+        ages.append(time.monotonic() - t)  # the robot's clock is this machine's
+        slowest.append(observer.speed())
+
+    until(lambda: observer.speed() > 0.2, what="motion")
+    stir(page, 5.0, look)
+    assert max(ages) <= LATE_S + STEP_S, max(ages)
+    assert min(slowest) > 0.0
+    told = float(page.inner_text("#r-delay").removesuffix(" ms"))
+    assert told / 1000 == pytest.approx(sorted(ages)[len(ages) // 2], abs=0.15)
+    since = time.monotonic()
+    page.keyboard.press("Escape")
+    assert observer.stop_time(since) <= observer.welcome.stop_time + STEP_S
+    page.mouse.up()
+    until(lambda: page.inner_text("#verdict-word") == "Stopped", what="the word")
+    page.wait_for_timeout(1500)
+    assert not {"View only", "Not done", "No answer"} & set(page.evaluate("words"))
+
+
+def test_a_thinner_downlink_shows_only(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None:
+    """Where pictures come too late to drive by, the page says so and how late, stays with it, and still stops."""
+    (page, link), observer = thin, cockpit.observer
+    arm(page, observer)
+    press(page)
+    until(lambda: observer.speed() > 0.2, what="motion")
+    link.down.rate = 1_000.0
+    until(lambda: page.inner_text("#verdict-word") == "View only", what="the words")
+    until(lambda: observer.speed() == 0.0, what="standstill")
+    assert "ms late" in page.inner_text("#verdict-reason")
+    assert "View only" in page.inner_text("#pad-hint")
+    page.mouse.up()
+    page.evaluate("words.length = 0")
+    for _ in range(4):
+        press(page)
+        page.wait_for_timeout(700)
+        assert observer.speed() == 0.0
+        page.mouse.up()
+    assert set(page.evaluate("words")) <= {"View only"}
+    page.keyboard.press("Escape")
+    until(lambda: observer.now.stopped, 3.0, "the stop")
+    until(lambda: page.inner_text("#verdict-word") == "Stopped", what="the word")
+    page.wait_for_timeout(1500)
+    assert not {"Not done", "No answer"} & set(page.evaluate("words"))
+    link.down.rate = math.inf
+    until(lambda: page.evaluate("overreach.fitness.good"), what="a link that is good again")
+    arm(page, observer)
+    press(page)
+    until(lambda: observer.speed() > 0.2, what="motion")
+    page.mouse.up()
+
+
+def test_a_link_that_stalls(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None:
+    """A page that is not heard any more says so, lets go, and does not go on by itself when it is heard again."""
+    (page, link), observer = thin, cockpit.observer
+    arm(page, observer)
+    press(page)
+    until(lambda: observer.speed() > 0.2, what="motion")
+    since = time.monotonic()
+    link.up.rate = 1.0
+    until(lambda: page.inner_text("#verdict-word") == "View only", what="the words")
+    assert observer.stop_time(since) <= observer.welcome.stop_time + STEP_S
+    assert not page.evaluate("overreach.stick.held")
+    page.wait_for_timeout(600)
+    link.up.rate = math.inf
+    until(lambda: page.evaluate("overreach.link.ready && overreach.fitness.good"), what="a link that is good again")
+    page.wait_for_timeout(500)
+    assert observer.speed() == 0.0
+    page.mouse.up()
