@@ -17,7 +17,7 @@ PROBE = """
   window.took = [];
   let waiting = null;
   document.getElementById("pad").addEventListener("pointerrawupdate", (event) => {
-    if (!waiting) waiting = { seq: stick.seq, at: event.timeStamp };
+    if (!waiting) waiting = { seq: stick.seq + (stick.due ? 1 : 0), at: event.timeStamp }; // sent, or about to be
   });
   view.afterDraw.push(() => {
     if (waiting && page.drawn && page.drawn.ack >= waiting.seq) {

@@ -74,8 +74,8 @@ class Loop:
         self._link = link
         self._clock = clock
         self._model = robot.model
-        self.settings = usual(robot.model, law)
-        built = build(self.settings, robot.model)
+        built = build(usual(robot.model, law), robot.model)
+        self.settings = built.settings
         self.pilot = Pilot(built.model, built.law)
         self._reception = Reception(self.pilot, link.name, rate, robot.simulated, self.settings)
         self._reception.take(built)

@@ -10,6 +10,8 @@ from concurrent.futures import Future
 from threading import Thread
 from typing import final
 
+import msgspec
+
 from overreach.law.blend import Blend, Step
 from overreach.law.body import Planner, WholeBody
 from overreach.link.messages import Choice, Plug, Scene, Settings, encode
@@ -51,7 +53,13 @@ def build(settings: Settings, model: Model) -> Built:
     drawn: Blend = getattr(law, "blend", Step())
     scene = Scene(model.base.footprint, workspace(placed_model), bands(placed_model, drawn.width_l, drawn.width_psi))
     encode(scene)  # what cannot be sent is told now
+    settings = msgspec.structs.replace(settings, law=_read(settings.law, law), blend=_read(settings.blend, blend))
     return Built(settings, law, placed_model, law.planner(placed_model), scene)
+
+
+def _read(chosen: Choice, plug: Parameters) -> Choice:
+    """Return a choice with its numbers as numbers, where they were given as texts."""
+    return Choice(chosen.name, {name: getattr(plug, name) for name in chosen.parameters})
 
 
 def laws_to_choose() -> dict[str, Plug]:
