@@ -7,6 +7,7 @@ import { factor, USUAL_EXPO } from "./curve.js";
 const HEARTBEAT_MS = 33;
 const APART_MS = 1000 / 60;
 const AWAY_MOST = 3; // messages on their way
+const SAVED_MOST = 3; // messages that may follow each other at once after a while with fewer
 const AGAIN_MS = [20, 60]; // a release is said again
 
 export class Stick {
@@ -23,6 +24,7 @@ export class Stick {
     this.y = 0; // up, -1 to 1
     this.curved = false; // whether the curve is applied to it
     this.last = 0;
+    this.left = 0; // how many more could have been sent then
     this.due = false;
     this.listeners = []; // called with the stick when it has changed
     this.lost = []; // called with the reason when a hold was ended by doubt
@@ -105,15 +107,24 @@ export class Stick {
     const since = performance.now() - this.last;
     if (this.held && since >= HEARTBEAT_MS - 4) this.due = true;
     if (!this.due || this.link.away >= AWAY_MOST) return;
-    // Where answers take long the few are spread evenly: in a burst, the wait for them would be taken for silence.
-    const apart = Math.max(APART_MS, this.link.delay.trip / AWAY_MOST);
-    if (since >= apart - 0.5) this.send();
-    else this.timer ??= setTimeout(() => this.pump((this.timer = null)), apart - since);
+    // A few may follow each other at once, so that a movement need not wait for the heartbeat before it. Where answers
+    // take long the few are spread evenly: in a burst, the wait for them would be taken for silence.
+    const spread = this.link.delay.trip / AWAY_MOST;
+    const wait = spread > APART_MS ? spread - since : (1 - this.saved(since)) * APART_MS;
+    if (wait < 0.5) this.send();
+    else this.timer ??= setTimeout(() => this.pump((this.timer = null)), wait);
+  }
+
+  // How many messages may be sent now, `since` [ms] after the last.
+  saved(since) {
+    return Math.min(SAVED_MOST, this.left + since / APART_MS);
   }
 
   send() {
+    const now = performance.now();
+    this.left = Math.max(0, this.saved(now - this.last) - 1);
+    this.last = now;
     this.due = false;
-    this.last = performance.now();
     const { grip, held, twist, frame } = this;
     const seen = this.link.t;
     this.link.sendNumbered({ type: "command", grip, held, twist, frame, seen });
