@@ -66,9 +66,11 @@ def shared_cockpit() -> Iterator[Cockpit]:
 def cockpit(shared_cockpit: Cockpit) -> Cockpit:
     """The shared processes, the robot disarmed at its start with the settings that it began with."""
     cockpit, observer = shared_cockpit, shared_cockpit.observer
-    for request in (StopRequest(), ResetRequest(), ConfigureRequest(observer.welcome.settings)):
+    assert observer.link.request(StopRequest()) == Accepted()
+    until(lambda: observer.now.stopped and observer.speed() == 0.0, what="rest")
+    for request in (ResetRequest(), ConfigureRequest(observer.welcome.settings)):
         assert observer.link.request(request) == Accepted()
-    until(lambda: observer.speed() == 0.0 and not observer.now.armed and not observer.now.stopped, what="rest")
+    until(lambda: not observer.now.armed and not observer.now.stopped, what="the reset")
     until(lambda: observer.link.request(RestartRequest()) == Accepted(), what="the start")
     until(lambda: observer.now.pose.x == 0.0, what="the start")
     cockpit.requests.clear()

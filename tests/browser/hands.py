@@ -51,6 +51,10 @@ class Fingers:
             self._down.pop(finger, None)
             self._tell("touchEnd")
 
+    def scale(self, factor: float) -> None:
+        """Zoom the page, as two fingers do."""
+        self._session.send("Emulation.setPageScaleFactor", {"pageScaleFactor": factor})
+
     def key(self, kind: str, key: str, code: str = "", modifiers: int = 0) -> None:
         """Send keyDown or keyUp exactly so."""
         self._session.send("Input.dispatchKeyEvent", {"type": kind, "key": key, "code": code, "modifiers": modifiers})

@@ -88,7 +88,7 @@ def test_the_mouse(page: Page, cockpit: Cockpit) -> None:
 
 
 def test_fingers(phone: BrowserContext, cockpit: Cockpit) -> None:
-    """A phone that is turned, and a touch that is cancelled or whose end was never told: the next touch drives."""
+    """A phone turned, scrolled or zoomed, a touch whose end was never told: let go, and the next touch drives."""
     page, observer = cockpit.watch(phone.new_page()), cockpit.observer
     fingers = Fingers(page)
     arm(page, observer)
@@ -113,6 +113,11 @@ def test_fingers(phone: BrowserContext, cockpit: Cockpit) -> None:
         nudge()
     fingers.lift()
     page.evaluate("scrollTo(0, 0)")
+    with ended(page, observer, "the page zoomed", press):
+        fingers.scale(1.4)
+        nudge()
+    fingers.lift()
+    fingers.scale(1.0)
     with ended(page, observer, "a finger that the page has lost", press):
         page.evaluate("overreach.stick.release()")  # as when the window is left: its end is never told to the pad
     press(2)

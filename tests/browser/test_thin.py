@@ -7,6 +7,7 @@ import math
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page
@@ -97,7 +98,8 @@ class Mouse:
     def __init__(self, port: int, page: Page) -> None:
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/json", timeout=10) as answer:
             address = next(one["webSocketDebuggerUrl"] for one in json.load(answer) if one["url"].startswith(page.url))
-        self._socket = connect(address)
+        self._stack = ExitStack()
+        self._socket = self._stack.enter_context(connect(address))
         self._id = 0
 
     def tell(self, kind: str, x: float, y: float, buttons: int) -> None:
@@ -112,7 +114,7 @@ class Mouse:
             pass
 
     def close(self) -> None:
-        self._socket.close()
+        self._stack.close()
 
 
 def test_at_most_sixty_a_second(browser: Browser, debugging_port: int, cockpit: Cockpit) -> None:

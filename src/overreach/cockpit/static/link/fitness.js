@@ -6,7 +6,8 @@ const WELL_MS = 300; // at most this late, for a while, and it is good again
 const FIRST_MS = 1000;
 const LONGEST_MS = 60000;
 const FORGET_MS = 60000; // good for this long, and the waiting starts anew at FIRST_MS
-const HUNG_MS = 250; // a page that was itself busy for longer than this has not looked at what has come meanwhile
+const HUNG_MS = 250; // a page that was itself busy for longer than this ...
+const CATCH_UP_MS = 300; // ... takes this long to look at what has come meanwhile
 
 export class Fitness {
   constructor() {
@@ -17,13 +18,14 @@ export class Fitness {
     this.good = true;
     this.wait = FIRST_MS;
     this.since = this.bad = this.looked = performance.now();
+    this.hung = -Infinity;
   }
 
   // Take in how late things are now [ms]; call at least every HUNG_MS / 2. Returns whether one may drive.
   look(late, at) {
-    const hung = at - this.looked > HUNG_MS;
+    if (at - this.looked > HUNG_MS) this.hung = at;
     this.looked = at;
-    if (hung) return this.good;
+    if (at - this.hung < CATCH_UP_MS) return this.good;
     if (this.good) {
       if (at - this.since > FORGET_MS) this.wait = FIRST_MS;
       if (late > LATE_MS) {
