@@ -107,7 +107,6 @@ def test_rows_out_of_order_are_named_by_line(tmp_path: Path, rows: str, line: st
 @pytest.mark.parametrize(
     ("segments", "found"),
     [
-        ("[]", "no rows"),
         ("[{t = 5.0, v_c = 0.1, w_c = 0.0}]", "no command would be carried out"),
         ("[{t = 1764075000.0, v_c = 0.1, w_c = 0.0}]", "seconds since 1970"),
         ("[{t = 0.0, v_c = 0.1, w_c = 0.0}, {t = 0.0, v_c = 0.1, w_c = 0.0}]", "entry 2 is not after 0"),

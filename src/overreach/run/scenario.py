@@ -100,10 +100,10 @@ def parse_scenario(text: str, name: str = "scenario", folder: Path | None = None
     return _assemble(read_tables(text, name), name, folder or Path())
 
 
-def _segments(command: CommandTable, dither: Dither, name: str, folder: Path) -> tuple[Segment, ...]:
+def _segments(command: CommandTable, name: str, folder: Path) -> tuple[Segment, ...]:
     """Return the commands of the table or of its file, with their times from the run's start."""
-    if command.segments == () and dither != Dither():
-        return ()  # a tremor alone
+    if command.segments == ():
+        return ()  # written so: a robot that is to stand still, or a tremor alone
     if command.file is not None:
         what, rows = f"command file {command.file!r}", read_commands(folder / command.file, name)
     else:
@@ -133,7 +133,7 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
         )
     if (command.segments is None) == (command.file is None):
         raise ScenarioError(f"scenario {name!r}: [command] needs either segments or file, one of the two")
-    segments = _segments(command, tables.dither, name, folder)
+    segments = _segments(command, name, folder)
 
     given = load_model(robot.name)
     own = given.workspace
