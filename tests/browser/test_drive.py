@@ -318,3 +318,8 @@ def test_a_stop_outlives_a_lost_connection(page: Page, cockpit: Cockpit) -> None
     arm(page, cockpit.observer)
     page.evaluate("overreach.link.socket.close(); overreach.buttons.stop()")
     until(lambda: cockpit.observer.now.stopped, what="the stop")
+    page.click("#reset")
+    until(lambda: not cockpit.observer.now.stopped, what="the reset")
+    arm(page, cockpit.observer)
+    page.evaluate("overreach.link.socket.close(); overreach.buttons.stop(); location.reload()")
+    until(lambda: cockpit.observer.now.stopped, what="the stop of a page that was loaded anew")

@@ -138,6 +138,11 @@ def test_worn_sticks(pads: Pads, cockpit: Cockpit) -> None:
     pads.put(1, 1.0, 0.0)
     until(lambda: observer.now.twist.v_y == pytest.approx(-FULL), what="the stick after its centre")
     pads.put(1, 0.0, 0.0)
+    until(lambda: observer.speed() == 0.0, what="the release")
+    page.evaluate("document.hasFocus = () => false")  # another window has it: this stick may be moved for that one
+    pads.put(1, 0.0, 1.0)
+    page.wait_for_timeout(200)
+    assert observer.speed() == 0.0
 
 
 def test_unknown_layouts(pads: Pads, cockpit: Cockpit) -> None:
@@ -215,6 +220,11 @@ def test_a_held_button_as_dead_man(pads: Pads, cockpit: Cockpit) -> None:
     until(lambda: observer.speed() == 0.0, what="the window left")
     page.wait_for_timeout(200)
     assert observer.speed() == 0.0  # the button is still held: it must come up first
+    pads.make(1, axes=[-1, -1, -1, -1])  # full before its first use
+    pads.press(1, 4)
+    page.wait_for_timeout(200)
+    assert observer.speed() == 0.0
+    pads.lift(1, 4)
     page.reload()
     page.wait_for_function("window.overreach?.page.state")
     assert page.input_value("#deadman") == "button"
@@ -224,7 +234,7 @@ def test_a_held_button_as_dead_man(pads: Pads, cockpit: Cockpit) -> None:
 def test_where_there_is_none(context: BrowserContext, cockpit: Cockpit) -> None:
     """Without a pad the page says what to do; where the browser hides them, why; a stuck arm button arms nothing."""
     page = cockpit.watch(context.new_page())
-    assert "press a button on it" in page.inner_text("#pads-none")
+    until(lambda: "press a button on it" in page.inner_text("#pads-none"), what="the words")
     page.add_init_script("delete Navigator.prototype.getGamepads")
     page.reload()
     page.wait_for_function("window.overreach?.page.state")

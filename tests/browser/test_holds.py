@@ -199,6 +199,7 @@ def test_the_curve(page: Page, cockpit: Cockpit) -> None:
             page.mouse.move(x, y - r * radius)
             wish = FULL * ((1 - expo) * r + expo * r**3)
             until(lambda wish=wish: abs(observer.now.twist.v_x - wish) < 2e-3, 5.0, f"{wish} at {r}")  # type: ignore[misc]  # bound in a loop
+            assert abs(float(page.inner_text("#out-v")) - wish) < 6e-3
         page.mouse.up()
         until(lambda: observer.speed() == 0.0, what="the release")
     page.reload()
@@ -238,7 +239,12 @@ def test_up_is_up_in_the_picture(page: Page, cockpit: Cockpit) -> None:
     until(lambda: observer.now.twist.v_x == FULL and observer.now.frame is Frame.HAND, what="forward of the hand")
     page.keyboard.up("ArrowUp")
     until(lambda: observer.speed() == 0.0, what="the release")
-    page.click("#turn")
+    page.mouse.move(*middle(page, "#pad"))
+    page.mouse.down()  # a hold that asks for nothing yet
+    until(lambda: page.evaluate("overreach.stick.held"), what="the hold")
+    page.keyboard.press("t")
     until(lambda: observer.link.welcome(5.0).settings.frame is Frame.WORLD, what="the way back")
+    until(lambda: not page.evaluate("overreach.stick.held"), what="the end of a hold whose meaning has changed")
+    page.mouse.up()
     until(lambda: page.evaluate("overreach.view.up") == 0, what="the fixed picture")
     assert cockpit.errors == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import signal
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
@@ -228,3 +229,51 @@ def test_a_link_that_stalls(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None
     page.wait_for_timeout(500)
     assert observer.speed() == 0.0
     page.mouse.up()
+
+
+def test_a_silent_robot_is_not_a_late_link(context: BrowserContext, fresh_cockpit: Cockpit) -> None:
+    """A robot side that says nothing for 3 s is called silent, not late; then the page knows how old things are."""
+    cockpit = fresh_cockpit
+    page = cockpit.watch(context.new_page())
+    page.evaluate(f"void (() => {{ {LISTEN} }})()")
+    cockpit.robot.process.send_signal(signal.SIGSTOP)
+    try:
+        until(lambda: "silent" in page.inner_text("#verdict-reason"), what="the words")
+        page.wait_for_timeout(3000)
+    finally:
+        cockpit.robot.process.send_signal(signal.SIGCONT)
+    until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="news of it")
+    page.wait_for_timeout(700)
+    assert "View only" not in page.evaluate("words")
+    knows = page.evaluate("(performance.now() + overreach.link.delay.ahead) / 1000")
+    assert knows == pytest.approx(time.monotonic(), abs=0.1)  # the robot's clock is this machine's
+    page.evaluate("overreach.link.socket.send('{}')")
+    until(lambda: "Not understood" in page.inner_text("#verdict-reason"), what="what nobody asked for")
+
+
+def test_the_page_changes_its_mind_seldom(page: Page) -> None:
+    """Lateness that comes and goes every second, for 10 minutes, makes the page change its mind 14 times at most."""
+    changes = page.evaluate(
+        """async () => {
+            const { Fitness } = await import("/static/link/fitness.js");
+            const counts = [];
+            for (const beat of [200, 1000, 3000, 20000]) {
+                const one = new Fitness();
+                const start = performance.now();
+                let [changes, was] = [0, true];
+                for (let at = start; at < start + 600000; at += 100) {
+                    const good = one.look(Math.floor((at - start) / beat) % 2 ? 600 : 20, at);
+                    changes += good !== was;
+                    was = good;
+                }
+                counts.push(changes);
+            }
+            const steady = new Fitness();
+            const start = performance.now();
+            let bad = 0;
+            for (let at = start; at < start + 60000; at += 100) bad += !steady.look(480, at);
+            return [...counts, bad];
+        }"""
+    )
+    assert changes[-1] == 0
+    assert max(changes[:-1]) <= 14, changes

@@ -159,7 +159,8 @@ def _operate(
         address = f"http://[{shown}]:{port}" if ":" in shown else f"http://{shown}:{port}"
 
         def ready() -> None:
-            print(f"overreach: drive at {address}   (Ctrl-C ends)", flush=True)
+            with contextlib.suppress(BrokenPipeError):  # whoever started it does not listen: it serves all the same
+                print(f"overreach: drive at {address}   (Ctrl-C ends)", flush=True)
             if browser and has_browser():
                 webbrowser.open(address)
 

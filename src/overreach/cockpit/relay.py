@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import sys
 from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, final
@@ -14,7 +15,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 from overreach.clock import MonotonicClock
 from overreach.cockpit import wire
 from overreach.cockpit.visitor import Visitor
-from overreach.errors import LinkError
+from overreach.errors import LinkError, told
 from overreach.link.messages import Accepted, AnyRequest, ConfigureRequest, Refused, Scene, Settings, State, Welcome
 from overreach.link.operator_end import OperatorEnd
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
@@ -42,8 +43,11 @@ class Relay:
         self._pages: set[Visitor] = set()
         self._revision = welcome.revision
         self._pictures = 0
-        self._t = 0.0
-        self._heard_at = self._clock.now()
+        self._newest = 0.0, self._clock.now()
+        """The time of the newest state, 0 before the first, and when it came [s]."""
+        self._told = ""
+        """Why there is no robot side to speak to, if it is known."""
+        self._changing = asyncio.Lock()
         self._stopper = ThreadPoolExecutor(1, "stop")
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tasks: set[asyncio.Task[object]] = set()
@@ -56,7 +60,7 @@ class Relay:
 
     def _from_robot(self, state: State) -> None:
         """Take a state, on zenoh's thread."""
-        self._t, self._heard_at = state.t, self._clock.now()
+        self._newest = state.t, self._clock.now()
         if (self._pages or state.revision != self._revision) and self._loop is not None:
             self._pictures += 1
             message = wire.encode(wire.StateToPage(self._pictures, state))
@@ -78,27 +82,29 @@ class Relay:
     async def _refresh(self) -> None:
         """Fetch what somebody has changed, or what a robot side that was started anew is, and tell every page."""
         try:
-            self._take_over(await asyncio.to_thread(self._link.welcome, 1.0))
+            async with self._changing:
+                self._take_over(await asyncio.to_thread(self._link.welcome, 1.0))
         except LinkError:
             self._revision = -1  # not known: the next state asks again
 
     async def _watch(self) -> None:
         """Where nothing comes any more, look for a robot side under another name or of another version."""
-        told = ""
         while True:
             await asyncio.sleep(SILENT_S)
-            if self._clock.now() - self._heard_at < SILENT_S:
-                told = ""
+            if self._clock.now() - self._newest[1] < SILENT_S:
+                self._told = ""
                 continue
             try:
                 found = await asyncio.to_thread(self._link.seek)
+                if found is not None:
+                    self._take_over(found)
             except LinkError as error:
-                if str(error) != told:
-                    told = str(error)
-                    self._say(wire.AnswerToPage(-1, False, told))
-                continue
-            if found is not None:
-                self._take_over(found)
+                if str(error) != self._told:
+                    self._told = str(error)
+                    for page in self._pages:
+                        page.say(_unasked(self._told))
+            except Exception as error:  # of the network's library, which has more than it names: there is a next time
+                print(f"overreach: the robot side could not be looked for ({told(error)})", file=sys.stderr)
 
     def _take_over(self, welcome: Welcome) -> None:
         """Make `welcome` what is known of the robot side."""
@@ -107,15 +113,11 @@ class Relay:
         self._revision = welcome.revision
         for page in self._pages:
             page.say(wire.encode(wire.SettingsToPage(self.settings, self.scene) if same else self._greeting(page)))
-        for told in list(self.on_settings):
-            told(self.settings)
+        for show in list(self.on_settings):
+            show(self.settings)
 
     def _greeting(self, page: Visitor) -> wire.Greeting:
         return wire.Greeting(page.operator, self.welcome, self.settings, self.scene)
-
-    def _say(self, message: object) -> None:
-        for page in self._pages:
-            page.say(wire.encode(message))
 
     async def ask(self, request: AnyRequest) -> Accepted | Refused:
         """Ask the robot side, without holding up the pages. Stop has its own thread and waits for nothing else."""
@@ -123,17 +125,26 @@ class Relay:
             return await asyncio.get_running_loop().run_in_executor(self._stopper, self._link.request, request)
         return await asyncio.to_thread(self._link.request, request)
 
-    async def configure(self, settings: Settings) -> Accepted | Refused:
-        """Ask for new settings; every page is told when they are in force."""
-        answer = await self.ask(ConfigureRequest(settings))
-        if isinstance(answer, Accepted):
-            self.settings = settings
-        return answer
+    async def configure(self, change: Callable[[Settings], Settings]) -> Accepted | Refused:
+        """Ask for the settings in force with a `change`; every page is told when they are in force.
+
+        One change after the other, so that none undoes another. Raises what `change` raises.
+        """
+        async with self._changing:
+            wanted = change(self.settings)
+            if wanted == self.settings:
+                return Accepted()
+            answer = await self.ask(ConfigureRequest(wanted))
+            if isinstance(answer, Accepted):
+                self.settings = wanted
+            return answer
 
     async def serve(self, socket: WebSocket) -> None:
         """Serve one page until it is gone; then let go of the robot and disarm for it."""
         page = Visitor(socket, self._clock)
         page.say(wire.encode(self._greeting(page)))
+        if self._told:
+            page.say(_unasked(self._told))
         self._pages.add(page)
         sender = asyncio.create_task(page.send_forever())
         try:
@@ -144,8 +155,8 @@ class Relay:
         finally:
             self._pages.discard(page)
             sender.cancel()
-            self._link.send(Command(page.operator, page.seq + 1, page.grip, False))
             self._spawn(self.ask(DisarmRequest(page.operator)))
+            self._link.send(Command(page.operator, page.seq + 1, page.grip, False))
             with contextlib.suppress(Exception, asyncio.CancelledError):
                 await sender
 
@@ -156,7 +167,7 @@ class Relay:
                 raise msgspec.DecodeError("message is too long")
             message = wire.decode_from_page(text)
         except msgspec.DecodeError as error:
-            page.say(wire.encode(wire.AnswerToPage(-1, False, f"Not understood: {error}")))
+            page.say(_unasked(f"Not understood: {error}"))
             return
         if isinstance(message, wire.CommandFromPage):
             self._command(page, message)
@@ -165,7 +176,8 @@ class Relay:
         elif isinstance(message, wire.AskFromPage):
             self._spawn(self._answer(page, message))
         if isinstance(message, wire.CommandFromPage | wire.BeatFromPage):
-            page.heard(message.seq, self._t)
+            t, came = self._newest
+            page.heard(message.seq, t, self._clock.now() - came)
         if not isinstance(message, wire.AskFromPage):
             page.shown(message.n if isinstance(message, wire.ShownFromPage) else message.shown)
 
@@ -185,11 +197,10 @@ class Relay:
             "restart": RestartRequest(),
         }
         what, _, frame = question.what.partition(" ")
-        if what == "frame" and frame in tuple(Frame):
-            requests[question.what] = ConfigureRequest(msgspec.structs.replace(self.settings, frame=Frame(frame)))
+        turning = what == "frame" and frame in tuple(Frame)
         request = requests.get(question.what)
         answer: Accepted | Refused
-        if request is None:
+        if request is None and not turning:
             answer = Refused(f"Unknown button {question.what!r}.")
         elif isinstance(request, StopRequest):
             answer = await self.ask(request)
@@ -199,11 +210,19 @@ class Relay:
             page.asked += 1
             try:
                 async with page.turn:  # in the order in which they were asked
-                    answer = await self.ask(request)
+                    if request is None:
+                        answer = await self.configure(lambda now: msgspec.structs.replace(now, frame=Frame(frame)))
+                    else:
+                        answer = await self.ask(request)
             finally:
                 page.asked -= 1
         reason = answer.reason if isinstance(answer, Refused) else ""
         page.say(wire.encode(wire.AnswerToPage(question.id, not reason, reason)))
+
+
+def _unasked(reason: str) -> bytes:
+    """Return something to tell that answers no question."""
+    return wire.encode(wire.AnswerToPage(-1, False, reason))
 
 
 def _robot(welcome: Welcome) -> Welcome:

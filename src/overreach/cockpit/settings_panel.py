@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from functools import reduce
 from typing import Any, final
 
 import msgspec
@@ -171,16 +172,12 @@ class SettingsPanel:
         try:
             while self._wanted:
                 changes, self._wanted = self._wanted, []
-                wanted = self._relay.settings
                 try:
-                    for one in changes:
-                        wanted = one(wanted)
+                    answer = await self._relay.configure(_one_after_the_other(changes))
                 except ValueError as error:  # not a valid workspace
-                    ui.notify(str(error), type="warning", position="top")
-                    break
-                if wanted != self._relay.settings:
-                    self._tell(await self._relay.configure(wanted))
-                    await asyncio.sleep(PAUSE_S)
+                    answer = Refused(str(error))
+                self._tell(answer)
+                await asyncio.sleep(PAUSE_S)
         finally:
             self._asking = False
         self.show(self._relay.settings)
@@ -190,7 +187,7 @@ class SettingsPanel:
             ui.notify(answer.reason, type="warning", position="top")
 
     async def _defaults(self) -> None:
-        self._tell(await self._relay.configure(self._relay.welcome.defaults))
+        self._tell(await self._relay.configure(lambda _: self._relay.welcome.defaults))
         self.show(self._relay.settings)
 
     def show(self, settings: Settings) -> None:
@@ -216,6 +213,10 @@ class SettingsPanel:
             for one in plugs[name].parameters:
                 self._own[kind, name][one.name].value = chosen.parameters.get(one.name, one.default)
         self._quiet = False
+
+
+def _one_after_the_other(changes: list[Change]) -> Change:
+    return lambda settings: reduce(lambda now, change: change(now), changes, settings)
 
 
 _with: Any = msgspec.structs.replace

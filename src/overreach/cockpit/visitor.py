@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 from collections import deque
+from math import inf
 from typing import final
 
 from fastapi import WebSocket
@@ -16,25 +17,34 @@ SAID_MOST = 32
 """How many answers wait for a page that does not read; older ones are dropped."""
 PICTURES_MOST = 6
 """How many pictures may be on their way to a page that has not told that they came."""
-LONG_S = 0.2
-SHORT_S = 0.1
-"""A picture that took longer than LONG_S there and back makes it one fewer, one under SHORT_S one more [s]."""
+LONGER_S = 0.1
+LITTLE_LONGER_S = 0.05
+"""A picture that took LONGER_S more than one alone does makes it one fewer; some that did not, one more [s]."""
+CAREFUL_S = 3.0
+"""After one fewer there is none more for this long [s]."""
+ALONE_AGAIN_S = 10.0
+"""Where there are fewer, how long one alone takes is measured anew this often [s]."""
 OPERATOR_BITS = 52
 """Operator numbers are random and fit into a JavaScript number."""
 
 
 @final
 class Window:
-    """The pictures that are on their way: a link that delays them gets fewer, so that they do not queue up."""
+    """The pictures that are on their way: a link in which they queue up gets fewer, however long it is."""
 
     def __init__(self) -> None:
         self.most = PICTURES_MOST
         self._away: deque[tuple[int, float]] = deque()
+        self._least = inf
+        self._alone_at = -inf
+        self._alone = False
+        self._quick = 0
+        self._fewer_at = -inf
 
     @property
     def open(self) -> bool:
         """Whether another may be sent."""
-        return len(self._away) < self.most
+        return len(self._away) < (1 if self._alone else self.most)
 
     def sent(self, n: int, now: float) -> None:
         """Picture n leaves."""
@@ -45,10 +55,21 @@ class Window:
         took = None
         while self._away and self._away[0][0] <= n:
             took = now - self._away.popleft()[1]
-        if took is not None and took > LONG_S:
+        if took is None:
+            return
+        if self._alone and now - took >= self._alone_at:  # this one had the link to itself
+            self._alone, self._least = False, took
+        self._least = min(self._least, took)
+        if took > self._least + LONGER_S:
             self.most = max(1, self.most - 1)
-        elif took is not None and took < SHORT_S:
-            self.most = min(PICTURES_MOST, self.most + 1)
+            self._quick, self._fewer_at = 0, now
+        elif took <= self._least + LITTLE_LONGER_S and now - self._fewer_at > CAREFUL_S:
+            self._quick += 1
+            if self._quick > self.most and self.most < PICTURES_MOST:
+                self.most += 1
+                self._quick = 0
+        if self.most < PICTURES_MOST and now - self._alone_at > ALONE_AGAIN_S:
+            self._alone, self._alone_at = True, now
 
 
 @final
@@ -86,9 +107,9 @@ class Visitor:
         self._said.append(message)
         self._wake.set()
 
-    def heard(self, seq: int, t: float) -> None:
-        """Tell that everything up to number `seq` was heard, when the robot's newest state was of `t` [s]."""
-        self._heard = wire.HeardToPage(seq, t)
+    def heard(self, seq: int, t: float, ago: float) -> None:
+        """Tell that everything up to `seq` was heard, when the robot's state of `t` had come `ago` before [s]."""
+        self._heard = wire.HeardToPage(seq, t, round(ago, 4))
         self._wake.set()
 
     async def send_forever(self) -> None:

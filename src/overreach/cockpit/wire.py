@@ -66,10 +66,14 @@ class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
 
 
 class HeardToPage(msgspec.Struct, frozen=True, tag="heard"):
-    """Everything up to number `seq` was heard; t [s]: time of the robot's newest state. Goes ahead of pictures."""
+    """Everything up to number `seq` was heard. Goes ahead of pictures.
+
+    t [s]: time of the robot's newest state, 0 before the first; ago [s]: how long ago it came to the cockpit.
+    """
 
     seq: int
     t: float
+    ago: float
 
 
 class StateToPage(msgspec.Struct, frozen=True, tag="state"):

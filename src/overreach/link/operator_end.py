@@ -29,6 +29,7 @@ from overreach.link.messages import (
     encode,
     key,
 )
+from overreach.requests import DisarmRequest, StopRequest
 from overreach.types import Command
 
 ANSWER_S = 1.0
@@ -36,6 +37,8 @@ ANSWER_S = 1.0
 LOADING_S = 10.0
 """How long new settings may take [s]: a law that is used for the first time has its libraries loaded first."""
 AGAIN_S = 0.02
+URGENT = (StopRequest, DisarmRequest)
+"""Requests that go ahead of everything else."""
 
 
 @final
@@ -66,14 +69,16 @@ class OperatorEnd:
 
     def send(self, command: Command) -> None:
         """Send a command; it is dropped if the network is congested (the next one replaces it)."""
-        if self._commands is None:
-            self._commands = self._session.declare_publisher(
+        commands = self._commands
+        if commands is None:
+            commands = self._commands = self._session.declare_publisher(
                 key(self.robot, "command"),
                 congestion_control=zenoh.CongestionControl.DROP,
                 priority=zenoh.Priority.INTERACTIVE_HIGH,
                 express=True,
             )
-        self._commands.put(encode(command))
+        with contextlib.suppress(zenoh.ZError):  # another robot's by now: the next one is sent to the right one
+            commands.put(encode(command))
 
     def _ask(self, what: str, message: object, timeout_s: float, robot: str = "") -> dict[str, Answer]:
         """Return the answers by the names of the robots that gave them; `robot` "" asks all."""
@@ -83,6 +88,7 @@ class OperatorEnd:
             timeout=timeout_s,
             target=zenoh.QueryTarget.ALL,
             congestion_control=zenoh.CongestionControl.BLOCK,
+            priority=zenoh.Priority.REAL_TIME if isinstance(message, URGENT) else zenoh.Priority.DATA,
             express=True,
         )
         return {

@@ -64,7 +64,7 @@ def fitted(
 def _check(segments: Sequence[Segment], duration: float, what: str, unit: TimeUnit) -> None:
     first, last = segments[0].t, segments[-1].t
     seconds = SECONDS[unit]
-    since_1970 = next((of for least, of in EPOCH if first >= least), None)
+    since_1970 = next((of for least, of in EPOCH if first >= least and unit in (TimeUnit.S, of)), None)
     span = f"{what}: its stamps go from {first:.10g} to {last:.10g}"
     run = f"the run from 0 to {duration:g} s"
     if since_1970 is not None:

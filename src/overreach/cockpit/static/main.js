@@ -51,6 +51,9 @@ const link = new Link({
   heard() {
     stick.pump();
   },
+  told(reason) {
+    panel.tell("Robot side", reason);
+  },
   up() {
     page.heard = performance.now();
   },
@@ -60,12 +63,14 @@ const link = new Link({
   },
 });
 const stick = new Stick(link);
+stick.listeners.push(() => panel.stick(stick));
 link.soon = () => stick.held; // the next command acknowledges the picture
 stick.lost.push((why) => panel.tell(why === stick.barred ? "View only" : "Let go", why));
 
 function configure(settings, scene) {
   page.settings = settings;
   plots.configure(settings.workspace);
+  if (settings.frame !== stick.frame) stick.release(stick.holder, "What the stick means has changed: press again.");
   stick.frame = settings.frame;
   stick.axes = page.robot.axes[settings.frame];
   panel.axes(stick.axes);
@@ -85,7 +90,7 @@ view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
 setInterval(() => {
   if (!link.ready) return;
   const now = performance.now();
-  const late = link.delay.late(now);
+  const late = link.delay.late(now, silent());
   const good = fitness.look(late, now);
   panel.late(late, good);
   stick.bar(good ? "" : panel.viewOnly);
@@ -98,12 +103,32 @@ async function ask(what) {
   if (!answer.done) panel.tell(answer.late ? "No answer" : "Not done", answer.reason);
   return answer;
 }
+// A stop that is not confirmed yet outlives the page: its library reloads it after a longer outage.
+const PENDING = "overreach-stop";
+function pending(is) {
+  try {
+    if (is) sessionStorage.setItem(PENDING, "1");
+    else sessionStorage.removeItem(PENDING);
+    return is;
+  } catch {
+    return is; // some private windows keep nothing
+  }
+}
+function wasPending() {
+  try {
+    return sessionStorage.getItem(PENDING) !== null;
+  } catch {
+    return false;
+  }
+}
+
 const buttons = {
   // A stop is asked for again until the robot side confirms it, by its answer or its state, across lost connections too.
   async stop() {
     stick.release();
     if (page.stopping) return;
     page.stopping = true;
+    pending(true);
     const before = page.state?.t ?? 0;
     const stopped = () => page.state?.stopped && page.state.t > before;
     while (!(await link.ask("stop")).done && !stopped()) {
@@ -111,6 +136,7 @@ const buttons = {
       await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
     }
     page.stopping = false;
+    pending(false);
   },
   async arm() {
     if (stick.barred) return panel.tell("Not done", stick.barred);
@@ -154,3 +180,4 @@ new Inputs(stick, gamepads);
 
 window.overreach = { page, link, stick, view, plots, buttons, gamepads, fitness };
 document.documentElement.dataset.ready = "true";
+if (wasPending()) buttons.stop();

@@ -63,7 +63,8 @@ export class Gamepads {
     // Which button is which is not known of the others: there, every one of them stops.
     if (layout ? pressed.includes(layout.stop) : pressed.length) this.buttons.stop();
     if (!layout) return;
-    if (pressed.includes(layout.arm) && one.settled) this.buttons.arm();
+    const away = document.hidden || !document.hasFocus(); // browsers tell of gamepads to windows that nobody looks at, too
+    if (pressed.includes(layout.arm) && one.settled && !away) this.buttons.arm();
     one.settled ||= !pad.buttons[layout.arm]?.pressed;
 
     [one.x, one.y] = [read(pad, layout.x), read(pad, layout.y)];
@@ -71,16 +72,17 @@ export class Gamepads {
     const down = layout.hold.some((button) => pad.buttons[button]?.pressed);
     const part = size > DEAD ? Math.min(1, (size - DEAD) / (1 - DEAD)) / size : 0;
     const mine = this.holds === one && this.stick.holder === "gamepad";
-    if (document.hidden || (this.holds === one && !mine)) one.centred = false; // another has taken or ended the hold
+    one.rested ||= size <= DEAD;
+    if (away || (this.holds === one && !mine)) one.centred = false; // another has taken or ended the hold
     if (this.holds === one && !mine) this.holds = null;
     const holding = this.button ? down : size > (mine ? DEAD : TAKE);
     if (!(this.button ? down : size > DEAD)) {
       if (mine) this.end();
-      one.centred = !document.hidden;
+      one.centred = one.rested && !away;
     } else if (mine) {
       if (!holding) this.end();
       else if (one.x * part !== this.stick.x || one.y * part !== this.stick.y) this.stick.move("gamepad", one.x * part, one.y * part);
-    } else if (holding && one.centred && !document.hidden) {
+    } else if (holding && one.centred && !away) {
       one.centred = false;
       if (this.holds) this.end("Two gamepads were moved: let go of both."); // the other may be an old, frozen entry
       else if (!this.stick.held && this.stick.press("gamepad", one.x * part, one.y * part)) this.holds = one;
@@ -107,6 +109,7 @@ class Known {
   constructor(pad) {
     this.id = pad.id;
     this.layout = layoutOf(pad);
+    this.rested = false; // whether its stick has been seen at the centre: some read anything before their first use
     this.centred = false;
     this.settled = false; // whether its arm button has been seen up: one that is stuck arms nothing
     this.x = this.y = 0;

@@ -1,7 +1,8 @@
 // How late things are, by this page's own clock: what was sent and is not heard yet, and how old the newest picture is.
 //
-// The cockpit answers every numbered message with the robot's newest time t. If it was sent at p0, the robot's time was
-// t at p0 or later, so at the page's time p it is at most p + min(t - p0). No two clocks are compared.
+// The cockpit answers every numbered message with the robot's newest time t and how long ago it came. If the message was
+// sent at p0, the robot's time was t + ago at p0 or later: at the page's time p it is at most p + min(t + ago - p0). No
+// two clocks are compared.
 
 const DRIFT = 2e-4; // how fast the bound is given up again: more than two clocks drift apart
 
@@ -22,17 +23,19 @@ export class Delay {
     this.away.push([seq, at]);
   }
 
-  // The cockpit has heard everything up to seq, at the robot's time t [s].
-  heard(seq, t, at) {
+  // The cockpit has heard everything up to seq, when the robot's time t [s] had come `ago` [s] before; 0: none yet.
+  heard(seq, t, ago, at) {
     let from = null;
     while (this.away.length && this.away[0][0] <= seq) from = this.away.shift();
     if (from?.[0] !== seq) return;
     this.trip = at - from[1];
-    this.ahead = Math.min(t * 1000 - from[1], this.ahead + DRIFT * (at - this.at));
+    if (!t) return;
+    this.ahead = Math.min((t + ago) * 1000 - from[1], this.ahead + DRIFT * (at - this.at));
     this.at = at;
   }
 
   pictured(t) {
+    if (t * 1000 < this.picture) this.ahead = Infinity; // another robot side, with another clock
     this.picture = t * 1000;
   }
 
@@ -46,7 +49,8 @@ export class Delay {
     return this.picture === null || this.ahead === Infinity ? 0 : Math.max(0, at + this.ahead - this.picture);
   }
 
-  late(at) {
-    return Math.max(this.unheard(at), this.age(at));
+  // silent: nothing new comes from the robot, so that the picture's age says nothing of the link.
+  late(at, silent) {
+    return silent ? this.unheard(at) : Math.max(this.unheard(at), this.age(at));
   }
 }

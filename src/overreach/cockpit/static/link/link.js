@@ -7,10 +7,12 @@ const AGAIN_MS = 400;
 const ANSWER_MS = 3000;
 const BEAT_MS = 300; // where nothing else is sent: to know how late the link is
 const DEAF_MS = 10000; // nothing at all for this long: open it anew
+const JUMP_S = 1; // a time that goes back by more than this is of another robot side
+const OPENING_MS = 5000; // the same where it does not even open
 
 export class Link {
   constructor(handlers) {
-    this.handlers = handlers; // welcome, state, settings, heard, up, down
+    this.handlers = handlers; // welcome, state, settings, heard, told, up, down
     this.operator = 0;
     this.waiting = new Map();
     this.nextId = 1;
@@ -48,13 +50,13 @@ export class Link {
     const at = performance.now();
     if (message.type === "state") {
       this.shown = message.n;
-      this.t = Math.max(this.t, message.state.t);
+      if (message.state.t > this.t || message.state.t < this.t - JUMP_S) this.t = message.state.t;
       this.delay.pictured(message.state.t);
       this.handlers.state(message.state);
       if (this.shown > this.told && !(this.soon?.() && this.shown - this.told < 3)) this.send({ type: "shown", n: this.acknowledge() });
     } else if (message.type === "heard") {
-      this.t = Math.max(this.t, message.t);
-      this.delay.heard(message.seq, message.t, at);
+      if (message.t > this.t) this.t = message.t;
+      this.delay.heard(message.seq, message.t, message.ago, at);
       this.handlers.heard();
     } else if (message.type === "welcome") {
       const again = this.operator === message.operator;
@@ -67,7 +69,8 @@ export class Link {
       this.beat();
     } else if (message.type === "settings") this.handlers.settings(message.settings, message.scene);
     else if (message.type === "answer") {
-      this.waiting.get(message.id)?.(message);
+      if (this.waiting.has(message.id)) this.waiting.get(message.id)(message);
+      else if (message.id < 0) this.handlers.told(message.reason); // nobody asked
       this.waiting.delete(message.id);
     }
   }
@@ -101,7 +104,8 @@ export class Link {
 
   beat() {
     const now = performance.now();
-    if (this.socket.readyState === WebSocket.OPEN && now - this.heardAt > DEAF_MS) {
+    const patience = this.ready ? DEAF_MS : OPENING_MS;
+    if (this.socket.readyState !== WebSocket.CLOSED && now - this.heardAt > patience) {
       const deaf = this.socket; // a close may take its time to be told: what comes of it is not waited for
       deaf.onclose = deaf.onmessage = null;
       deaf.close();

@@ -24,11 +24,12 @@ export class View {
     this.afterFrame = []; // called in every frame, after any drawing
     this.colours();
     onTheme(() => this.colours());
+    this.resize(); // states may come before the first frame
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.attach();
     const frame = (at) => {
+      requestAnimationFrame(frame); // first: whatever goes wrong in one frame, there is a next
       this.step(at);
-      requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
   }
