@@ -6,9 +6,6 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-# Tests on real time have the machine to themselves; the others run side by side.
-REAL_TIME := tests/browser tests/faults tests/link
-
 .PHONY: drive reproduce test venv lint types bench mutate browser headline clean
 
 drive: venv
@@ -20,8 +17,8 @@ reproduce: $(VENV)/.ready-all
 venv: $(VENV)/.ready
 
 test: $(VENV)/.ready-dev browser lint types
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder $(REAL_TIME:%=--ignore=%)
-	$(BIN)/python -m pytest -q $(REAL_TIME)
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m "not real_time"
+	$(BIN)/python -m pytest -q -m real_time
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .

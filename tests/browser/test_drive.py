@@ -13,7 +13,7 @@ from playwright.sync_api import BrowserContext, CDPSession, Page
 from tests.browser.conftest import Cockpit
 from tests.processes import Observer, until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 
 
 def centre(page: Page) -> tuple[float, float]:
@@ -162,10 +162,8 @@ def test_diagonals_stay_in_the_circle(page: Page, cockpit: Cockpit) -> None:
     page.keyboard.up("ArrowLeft")
 
 
-@pytest.mark.parametrize("way", ["release", "close", "offline", "hidden", "kill"])
-def test_every_way_of_letting_go_stops_the_robot(context: BrowserContext, fresh_cockpit: Cockpit, way: str) -> None:
-    """Release, a closed, hidden or offline page and a killed cockpit each stop the robot in its `stop_time`."""
-    cockpit = fresh_cockpit
+def at_full_speed(context: BrowserContext, cockpit: Cockpit) -> Page:
+    """Return a page that drives straight on."""
     page = cockpit.watch(context.new_page())
     arm(page, cockpit.observer)
     x, y = centre(page)
@@ -173,6 +171,13 @@ def test_every_way_of_letting_go_stops_the_robot(context: BrowserContext, fresh_
     page.mouse.down()
     page.mouse.move(x, y - 90, steps=4)
     until(lambda: cockpit.observer.speed() > 0.39, what="full speed")
+    return page
+
+
+@pytest.mark.parametrize("way", ["release", "close", "offline", "hidden"])
+def test_every_way_of_letting_go_stops_the_robot(context: BrowserContext, cockpit: Cockpit, way: str) -> None:
+    """Release and a closed, hidden or offline page each stop the robot in its `stop_time`."""
+    page = at_full_speed(context, cockpit)
     since = time.monotonic()
     if way == "release":
         page.mouse.up()
@@ -180,15 +185,23 @@ def test_every_way_of_letting_go_stops_the_robot(context: BrowserContext, fresh_
         page.close()
     elif way == "offline":
         context.set_offline(True)
-    elif way == "hidden":
+    else:
         page.evaluate("Object.defineProperty(document, 'hidden', {value: true})")
         since = time.monotonic()
         page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
-    else:
-        cockpit.half.process.send_signal(signal.SIGKILL)
     assert cockpit.observer.stop_time(since) <= cockpit.observer.welcome.stop_time
     until(lambda: cockpit.observer.speed() == 0.0)
     assert cockpit.robot.process.poll() is None
+
+
+def test_a_killed_cockpit_stops_the_robot(context: BrowserContext, fresh_cockpit: Cockpit) -> None:
+    """The same for a cockpit that ends without a word."""
+    at_full_speed(context, fresh_cockpit)
+    observer = fresh_cockpit.observer
+    since = time.monotonic()
+    fresh_cockpit.half.process.send_signal(signal.SIGKILL)
+    assert observer.stop_time(since) <= observer.welcome.stop_time
+    assert fresh_cockpit.robot.process.poll() is None
 
 
 def test_a_page_that_hangs_stops_the_robot(page: Page, cockpit: Cockpit) -> None:
@@ -220,29 +233,30 @@ def test_nothing_moves_before_arming(page: Page, cockpit: Cockpit) -> None:
     page.mouse.up()
 
 
-@pytest.mark.parametrize("how", ["button", "Escape", "Space", "Control+Escape"])
-def test_stop_is_latched_on_the_page(page: Page, cockpit: Cockpit, how: str) -> None:
+def test_stop_is_latched_on_the_page(page: Page, cockpit: Cockpit) -> None:
     """Stop, by button or key, stops and holds; Reset moves nothing; Arm and a new press are needed to go on."""
     observer = cockpit.observer
     arm(page, observer)
-    page.keyboard.down("ArrowUp")
-    until(lambda: observer.speed() > 0.39, what="full speed")
-    if how == "button":
-        page.click("#stop")
-    else:
-        page.keyboard.press(how)
-    until(lambda: observer.now.stopped and observer.speed() == 0.0, what="the stop")
-    until(lambda: page.inner_text("#verdict-word") == "Stopped", what="the word")
-    assert page.is_disabled("#arm")
-    page.click("#reset")
-    until(lambda: not observer.now.stopped, what="the reset")
-    until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="the word")
-    assert observer.speed() == 0.0
-    page.keyboard.up("ArrowUp")
-    arm(page, observer)
-    page.keyboard.down("ArrowUp")
-    until(lambda: observer.speed() > 0.1, what="motion")
-    page.keyboard.up("ArrowUp")
+    for how in ("button", "Escape", "Space", "Control+Escape"):
+        page.keyboard.down("ArrowUp")
+        until(lambda: observer.speed() > 0.3, what="motion")
+        if how == "button":
+            page.click("#stop")
+        else:
+            page.keyboard.press(how)
+        until(lambda: observer.now.stopped and observer.speed() == 0.0, what="the stop")
+        until(lambda: page.inner_text("#verdict-word") == "Stopped", what="the word")
+        assert page.is_disabled("#arm")
+        page.click("#reset")
+        until(lambda: not observer.now.stopped, what="the reset")
+        until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="the word")
+        assert observer.speed() == 0.0
+        page.keyboard.up("ArrowUp")
+        arm(page, observer)
+        page.keyboard.down("ArrowUp")
+        until(lambda: observer.speed() > 0.1, what="motion")
+        page.keyboard.up("ArrowUp")
+        until(lambda: observer.speed() == 0.0, what="the release")
 
 
 def test_two_pages_one_operator(page: Page, context: BrowserContext, cockpit: Cockpit) -> None:
@@ -274,32 +288,26 @@ def test_a_reloaded_page_must_press_again(page: Page, cockpit: Cockpit) -> None:
     page.keyboard.up("ArrowUp")
 
 
-@pytest.mark.parametrize("way", ["blur", "offline", "hidden"])
-def test_a_gamepad_that_was_let_go_of_must_come_to_its_centre(
-    context: BrowserContext, cockpit: Cockpit, way: str
-) -> None:
+def test_a_gamepad_that_was_let_go_of_must_come_to_its_centre(context: BrowserContext, cockpit: Cockpit) -> None:
     """A stick that is still tilted after the page has let go does not take hold again by itself."""
     page = context.new_page()
     page.add_init_script(FAKE_GAMEPAD)
     cockpit.watch(page)
     arm(page, cockpit.observer)
     page.wait_for_timeout(100)
-    page.evaluate("fake.axes[1] = -1")
-    until(lambda: cockpit.observer.speed() > 0.39, what="full speed")
-    if way == "hidden":
-        page.evaluate("Object.defineProperty(document, 'hidden', {value: true})")
-        page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
-    else:
-        page.evaluate(f"window.dispatchEvent(new Event('{way}'))")
-    until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
-    page.wait_for_timeout(300)
-    assert cockpit.observer.speed() == 0.0
-    page.evaluate("fake.axes[1] = 0")
-    page.wait_for_timeout(100)
-    if way != "hidden":
+    for way in ("blur", "offline", "hidden"):
         page.evaluate("fake.axes[1] = -1")
-        until(lambda: cockpit.observer.speed() > 0.3, what="motion after the centre")
+        until(lambda: cockpit.observer.speed() > 0.39, what="full speed")
+        if way == "hidden":
+            page.evaluate("Object.defineProperty(document, 'hidden', {value: true})")
+            page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
+        else:
+            page.evaluate(f"window.dispatchEvent(new Event('{way}'))")
+        until(lambda: cockpit.observer.speed() == 0.0, what="standstill")
+        page.wait_for_timeout(300)
+        assert cockpit.observer.speed() == 0.0
         page.evaluate("fake.axes[1] = 0")
+        page.wait_for_timeout(100)
 
 
 def test_keys_let_go_with_ctrl_or_meta(page: Page, cockpit: Cockpit) -> None:

@@ -12,7 +12,7 @@ from tests.browser.conftest import Cockpit
 from tests.browser.hands import arm
 from tests.processes import until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 FULL = 0.4
 DEAD = 0.24
 

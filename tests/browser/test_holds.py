@@ -13,7 +13,7 @@ from tests.browser.conftest import Cockpit
 from tests.browser.hands import SHIFT, Fingers, arm, middle
 from tests.processes import Observer, until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 FULL = 0.4
 
 

@@ -234,35 +234,38 @@ def test_page_says_when_the_robot_side_is_gone(context: BrowserContext, fresh_co
         {"Origin": "null"},
     ],
 )
-def test_foreign_origins_do_not_get_in(cockpit: Cockpit, headers: dict[str, str]) -> None:
+def test_foreign_origins_do_not_get_in(shared_cockpit: Cockpit, headers: dict[str, str]) -> None:
     """The WebSocket is refused with 403 to any page that this cockpit did not serve."""
-    assert upgrade(cockpit.url, headers) == 403
+    assert upgrade(shared_cockpit.url, headers) == 403
 
 
-def test_the_own_origin_gets_in(cockpit: Cockpit) -> None:
+def test_the_own_origin_gets_in(shared_cockpit: Cockpit) -> None:
     """The same request with the page's own origin is let in: the refusals above are about the origin."""
-    assert upgrade(cockpit.url, {"Origin": cockpit.url}) == 101
+    assert upgrade(shared_cockpit.url, {"Origin": shared_cockpit.url}) == 101
 
 
-def test_foreign_hosts_get_nothing(cockpit: Cockpit) -> None:
+def test_foreign_hosts_get_nothing(shared_cockpit: Cockpit) -> None:
     """No page, file or socket is served under a name that a foreign site may have pointed here."""
     for path in ("/", "/static/main.js", "/_nicegui_ws/socket.io/"):
-        connection = http.client.HTTPConnection(cockpit.url.removeprefix("http://"), timeout=10)
+        connection = http.client.HTTPConnection(shared_cockpit.url.removeprefix("http://"), timeout=10)
         connection.request("GET", path, headers={"Host": "evil.example"})
         assert connection.getresponse().status == 403, path
         connection.close()
-    assert upgrade(cockpit.url, {"Origin": "http://evil.example"}, "/_nicegui_ws/socket.io/?transport=websocket") == 403
+    assert (
+        upgrade(shared_cockpit.url, {"Origin": "http://evil.example"}, "/_nicegui_ws/socket.io/?transport=websocket")
+        == 403
+    )
 
 
 @pytest.mark.parametrize("host", ["rover.local", "ROVER.local.", "rover", "localhost", "127.0.0.1", "[::1]"])
-def test_names_that_are_allowed(cockpit: Cockpit, host: str) -> None:
+def test_names_that_are_allowed(shared_cockpit: Cockpit, host: str) -> None:
     """Under the names that it was told are its own, in any spelling, the page and its WebSocket are served."""
-    port = cockpit.url.rpartition(":")[2]
-    connection = http.client.HTTPConnection(cockpit.url.removeprefix("http://"), timeout=10)
+    port = shared_cockpit.url.rpartition(":")[2]
+    connection = http.client.HTTPConnection(shared_cockpit.url.removeprefix("http://"), timeout=10)
     connection.request("GET", "/static/main.js", headers={"Host": f"{host}:{port}"})
     assert connection.getresponse().status == 200
     connection.close()
-    assert upgrade(cockpit.url, {"Origin": f"http://{host}:{port}", "Host": f"{host}:{port}"}) == 101
+    assert upgrade(shared_cockpit.url, {"Origin": f"http://{host}:{port}", "Host": f"{host}:{port}"}) == 101
 
 
 @pytest.mark.parametrize(
@@ -274,9 +277,9 @@ def test_names_that_are_allowed(cockpit: Cockpit, host: str) -> None:
         ("", "--allow-host NAME"),
     ],
 )
-def test_a_foreign_name_is_told_the_option(cockpit: Cockpit, host: str, option: str) -> None:
+def test_a_foreign_name_is_told_the_option(shared_cockpit: Cockpit, host: str, option: str) -> None:
     """The page of the refusal says which option to use, and runs nothing of what it was asked for as."""
-    connection = http.client.HTTPConnection(cockpit.url.removeprefix("http://"), timeout=10)
+    connection = http.client.HTTPConnection(shared_cockpit.url.removeprefix("http://"), timeout=10)
     connection.putrequest("GET", "/", skip_host=True)
     connection.putheader("Host", host)
     connection.endheaders()

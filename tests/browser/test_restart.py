@@ -14,7 +14,7 @@ from tests.browser.conftest import Cockpit
 from tests.browser.hands import arm
 from tests.processes import Half, Observer, half, until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 
 
 class Robots:

@@ -19,7 +19,7 @@ from tests.browser.hands import arm, middle
 from tests.narrow import Narrow, narrow
 from tests.processes import GENEROUS_S, until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 LATE_S = 0.5
 STEP_S = 0.1
 """What the test itself may add to a time: one call into a busy browser."""
@@ -66,29 +66,30 @@ def press(page: Page) -> None:
     page.mouse.move(x, y - 62)
 
 
-@pytest.mark.parametrize("rate", [4_000.0, 8_000.0, 32_000.0])
-def test_letting_go_through_a_thin_uplink(thin: tuple[Page, Narrow], cockpit: Cockpit, rate: float) -> None:
+def test_letting_go_through_a_thin_uplink(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None:
     """On 4 to 32 kB/s from page to cockpit, letting go and Stop take `stop_time` and a round trip, not a queue's."""
     (page, link), observer = thin, cockpit.observer
-    arm(page, observer)
-    link.up.rate = rate
-    round_trip = 4 * 220 / rate  # the messages that may be on their way, and one more
-    press(page)
-    until(lambda: observer.speed() > 0.1, what="motion")
-    slowest: list[float] = []
-    stir(page, 2.0, lambda: slowest.append(observer.speed()))
-    assert min(slowest) > 0.0  # it drives throughout
-    since = time.monotonic()
-    page.mouse.up()
-    assert observer.stop_time(since) <= observer.welcome.stop_time + round_trip + STEP_S
-    press(page)
-    until(lambda: observer.speed() > 0.1, what="motion")
-    stir(page, 0.5)
-    since = time.monotonic()
-    page.keyboard.press("Escape")
-    assert observer.stop_time(since) <= observer.welcome.stop_time + round_trip + STEP_S
-    until(lambda: observer.now.stopped, what="the stop")
-    page.mouse.up()
+    for rate in (4_000.0, 8_000.0, 32_000.0):
+        arm(page, observer)
+        link.up.rate = rate
+        round_trip = 4 * 220 / rate  # the messages that may be on their way, and one more
+        press(page)
+        until(lambda: observer.speed() > 0.1, what="motion")
+        speeds: list[float] = []
+        stir(page, 1.5, lambda: speeds.append(observer.speed()))  # noqa: B023  # called at once
+        assert min(speeds) > 0.0  # it drives throughout
+        since = time.monotonic()
+        page.mouse.up()
+        assert observer.stop_time(since) <= observer.welcome.stop_time + round_trip + STEP_S
+        press(page)
+        until(lambda: observer.speed() > 0.1, what="motion")
+        stir(page, 0.5)
+        since = time.monotonic()
+        page.keyboard.press("Escape")
+        assert observer.stop_time(since) <= observer.welcome.stop_time + round_trip + STEP_S
+        until(lambda: observer.now.stopped, what="the stop")
+        page.mouse.up()
+        link.up.rate = math.inf
     page.wait_for_timeout(500)
     assert not {"View only", "Not done", "No answer"} & set(page.evaluate("words"))
 
@@ -139,7 +140,7 @@ def test_at_most_sixty_a_second(browser: Browser, debugging_port: int, cockpit: 
     sticks = page.evaluate("overreach.link.seq") - first
     told = page.evaluate("raw") / took
     assert told > 120.0, f"the pointer told only {told:.0f} times a second"
-    assert sticks <= 60.0 * took + 3
+    assert sticks <= 60.0 * took
     assert sticks > 25.0 * took
     wish = page.evaluate("overreach.stick.forward")
     until(lambda: observer.now.twist.v_x == pytest.approx(wish, abs=1e-5), 5.0, "the newest")
@@ -166,7 +167,7 @@ def test_a_thin_downlink_drives(thin: tuple[Page, Narrow], cockpit: Cockpit) -> 
         slowest.append(observer.speed())
 
     until(lambda: observer.speed() > 0.2, what="motion")
-    stir(page, 5.0, look)
+    stir(page, 3.0, look)
     assert max(ages) <= LATE_S + STEP_S, max(ages)
     assert min(slowest) > 0.0
     told = float(page.inner_text("#r-delay").removesuffix(" ms"))
@@ -193,9 +194,9 @@ def test_a_thinner_downlink_shows_only(thin: tuple[Page, Narrow], cockpit: Cockp
     assert "View only" in page.inner_text("#pad-hint")
     page.mouse.up()
     page.evaluate("words.length = 0")
-    for _ in range(4):
+    for _ in range(3):
         press(page)
-        page.wait_for_timeout(700)
+        page.wait_for_timeout(400)
         assert observer.speed() == 0.0
         page.mouse.up()
     assert set(page.evaluate("words")) <= {"View only"}

@@ -16,7 +16,7 @@ from tests.browser.test_drive import arm
 from tests.plugin import install
 from tests.processes import until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 LOOKS = {"stop", "down", "warn", "ready", "go"}
 
 

@@ -13,6 +13,8 @@ import pytest
 from overreach.link.endpoint import free_port
 from tests.processes import Driver, Half, gone, half, port_is_free, robot, until
 
+pytestmark = pytest.mark.real_time
+
 
 def ports_of(drive: Half, url: str) -> list[int]:
     """Return the ports of page and robot side."""

@@ -15,6 +15,8 @@ from overreach.requests import ArmRequest, ResetRequest
 from tests.plugin import install
 from tests.processes import Driver, Half, Observer, half, port_is_free, robot, until
 
+pytestmark = pytest.mark.real_time
+
 CHANGE = {"v_x": 3.5, "w_z": 12.0}
 PERIOD_S = 0.005
 

@@ -20,6 +20,8 @@ from tests.processes import Driver, half, robot, until
 
 numbers = st.floats(allow_nan=False)
 
+pytestmark = pytest.mark.real_time
+
 
 @given(st.builds(Command, st.integers(0, 2**53), st.integers(0, 2**53), st.integers(0, 2**31), st.booleans(),
                  st.builds(Twist, *[numbers] * 6), st.sampled_from(Frame), st.none() | numbers, numbers))  # fmt: skip

@@ -5,7 +5,7 @@
 import { factor, USUAL_EXPO } from "./curve.js";
 
 const HEARTBEAT_MS = 33;
-const APART_MS = 1000 / 60;
+const APART_MS = 1000 / 57; // with what may be saved up, no second has more than 60
 const AWAY_MOST = 3; // messages on their way
 const SAVED_MOST = 3; // messages that may follow each other at once after a while with fewer
 const AGAIN_MS = [20, 60]; // a release is said again
