@@ -16,9 +16,9 @@ reproduce: $(VENV)/.ready-all
 
 venv: $(VENV)/.ready
 
+# What measures time goes first; the others take what it leaves of the machine.
 test: $(VENV)/.ready-dev browser lint types
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m "not real_time"
-	$(BIN)/python -m pytest -q -m real_time
+	@$(BIN)/python tests/both.py
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .

@@ -15,7 +15,7 @@ from tests.browser.conftest import Cockpit
 from tests.browser.test_drive import arm
 from tests.processes import until
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 
 
 def test_no_external_request(page: Page, cockpit: Cockpit) -> None:

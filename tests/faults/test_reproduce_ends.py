@@ -11,6 +11,8 @@ import pytest
 
 from tests.processes import gone, until
 
+pytestmark = pytest.mark.real_time  # and a Ctrl-C of its own
+
 
 @pytest.mark.parametrize(("how", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-c", "terminated"])
 def test_reproduce_leaves_no_process_behind(tmp_path: Path, how: signal.Signals, code: int) -> None:

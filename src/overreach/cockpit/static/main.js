@@ -90,7 +90,7 @@ view.afterFrame.push((at) => plots.afterFrame(at, stick.held));
 setInterval(() => {
   if (!link.ready) return;
   const now = performance.now();
-  const late = link.delay.late(now, silent());
+  const late = link.delay.late(now);
   const good = fitness.look(late, now);
   panel.late(late, good);
   stick.bar(good ? "" : panel.viewOnly);

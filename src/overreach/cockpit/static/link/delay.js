@@ -4,6 +4,7 @@
 // sent at p0, the robot's time was t + ago at p0 or later: at the page's time p it is at most p + min(t + ago - p0). No
 // two clocks are compared.
 
+const QUIET_S = 0.1; // since when nothing has come to the cockpit: then old pictures are the robot's, not the link's
 const DRIFT = 2e-4; // how fast the bound is given up again: more than two clocks drift apart
 
 export class Delay {
@@ -15,6 +16,7 @@ export class Delay {
     this.away = []; // [seq, sent at] of what is not heard yet, oldest first [ms]
     this.ahead = Infinity; // the robot's time is at most the page's plus this [ms]
     this.at = 0;
+    this.ago = 0; // how long ago the newest state had come to the cockpit, in its newest answer [s]
     this.trip = 0; // how long the newest answer took, there and back [ms]
     this.picture = null; // the robot's time of the newest picture [ms]
   }
@@ -28,6 +30,7 @@ export class Delay {
     let from = null;
     while (this.away.length && this.away[0][0] <= seq) from = this.away.shift();
     if (from?.[0] !== seq) return;
+    this.ago = ago;
     this.trip = at - from[1];
     if (!t) return;
     this.ahead = Math.min((t + ago) * 1000 - from[1], this.ahead + DRIFT * (at - this.at));
@@ -49,8 +52,8 @@ export class Delay {
     return this.picture === null || this.ahead === Infinity ? 0 : Math.max(0, at + this.ahead - this.picture);
   }
 
-  // silent: nothing new comes from the robot, so that the picture's age says nothing of the link.
-  late(at, silent) {
-    return silent ? this.unheard(at) : Math.max(this.unheard(at), this.age(at));
+  // How late the link is.
+  late(at) {
+    return this.ago > QUIET_S ? this.unheard(at) : Math.max(this.unheard(at), this.age(at));
   }
 }
