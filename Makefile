@@ -16,9 +16,10 @@ reproduce: $(VENV)/.ready-all
 
 venv: $(VENV)/.ready
 
-# What measures time goes first; the others take what it leaves of the machine.
+# What measures time has the machine to itself; the others run side by side.
 test: $(VENV)/.ready-dev browser lint types
-	@$(BIN)/python tests/both.py
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m "not real_time"
+	$(BIN)/python -m pytest -q -m real_time
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .

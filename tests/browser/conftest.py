@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Error, Page
 
 from overreach.link.endpoint import free_port
 from overreach.link.messages import Accepted, ConfigureRequest
@@ -95,5 +96,77 @@ def phone(browser: Browser) -> Iterator[BrowserContext]:
 
 
 @pytest.fixture
-def page(context: BrowserContext, cockpit: Cockpit) -> Page:
+def fresh_page(context: BrowserContext, cockpit: Cockpit) -> Page:
+    """A page that nobody has used."""
     return cockpit.watch(context.new_page())
+
+
+CLEAN = """() => {
+    const { fitness, gamepads, link, page, stick, view } = window.overreach;
+    const kept = [...Object.keys(localStorage), ...Object.keys(sessionStorage)];
+    const own = kept.some((key) => key.startsWith("overreach"));
+    const quiet = link.ready && fitness.good && !stick.held && !page.stopping && !gamepads.pads.size;
+    const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    const looks = view.follow && !view.turns && innerWidth === 1360 && innerHeight === 850 && !dark;
+    return quiet && looks && !own && !document.querySelector(".q-menu") && document.hasFocus();
+}"""
+KEYS = ("Shift", "Control", "Alt", "Meta", "ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight")
+
+
+class Kept:
+    """A page that one test after the other uses, as long as it is as it was at first: to load one takes a second."""
+
+    def __init__(self) -> None:
+        self.page: Page | None = None
+        self._settings = ""
+
+    def again(self) -> Page | None:
+        """Return the page, ready for another test; None if there is none that can be used."""
+        page = self.page
+        if page is None:
+            return None
+        now = "JSON.stringify(overreach.page.settings)"
+        until(lambda: page.evaluate(now) == self._settings, what="the first settings on the page")
+        page.evaluate("overreach.panel.until = 0; overreach.view.clear(); document.activeElement?.blur()")
+        until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="the page's news of it")
+        return page
+
+    def take(self, page: Page) -> None:
+        self.page = page
+        self._settings = page.evaluate("JSON.stringify(overreach.page.settings)")
+
+    def give_back(self) -> None:
+        """Let go of everything; close the page if it is not as it was at first."""
+        page, self.page = self.page, None
+        assert page is not None
+        with contextlib.suppress(Error):
+            page.mouse.up()
+            for key in KEYS:
+                page.keyboard.up(key)
+            page.evaluate("scrollTo(0, 0); document.getElementById('side').scrollTo(0, 0)")
+            if page.evaluate(CLEAN):
+                self.page = page
+                return
+            page.context.close()
+
+    def close(self) -> None:
+        if self.page is not None:
+            self.page.context.close()
+
+
+@pytest.fixture(scope="session")
+def kept(browser: Browser) -> Iterator[Kept]:
+    pages = Kept()
+    yield pages
+    pages.close()
+
+
+@pytest.fixture
+def page(browser: Browser, cockpit: Cockpit, kept: Kept) -> Iterator[Page]:
+    """A page, of which nothing is left of the test before."""
+    page = kept.again()
+    if page is None:
+        page = cockpit.watch(browser.new_context(viewport={"width": 1360, "height": 850}).new_page())
+        kept.take(page)
+    yield page
+    kept.give_back()

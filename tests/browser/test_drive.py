@@ -226,17 +226,17 @@ def test_a_page_that_hangs_stops_the_robot(page: Page, cockpit: Cockpit) -> None
     page.keyboard.up("ArrowUp")
 
 
-def test_nothing_moves_before_arming(page: Page, cockpit: Cockpit) -> None:
+def test_nothing_moves_before_arming(fresh_page: Page, cockpit: Cockpit) -> None:
     """A pad that is dragged on a disarmed robot moves nothing, and the page says what to do."""
-    assert page.inner_text("#verdict-word") == "Disarmed"
-    assert "Press Arm" in page.inner_text("#pad-hint")
-    x, y = centre(page)
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x, y - 90, steps=4)
+    assert fresh_page.inner_text("#verdict-word") == "Disarmed"
+    assert "Press Arm" in fresh_page.inner_text("#pad-hint")
+    x, y = centre(fresh_page)
+    fresh_page.mouse.move(x, y)
+    fresh_page.mouse.down()
+    fresh_page.mouse.move(x, y - 90, steps=4)
     until(lambda: cockpit.observer.now.ack > 5, what="sticks at the robot")
     assert cockpit.observer.speed() == 0.0
-    page.mouse.up()
+    fresh_page.mouse.up()
 
 
 def test_stop_is_latched_on_the_page(page: Page, cockpit: Cockpit) -> None:
@@ -284,14 +284,14 @@ def test_two_pages_one_operator(page: Page, context: BrowserContext, cockpit: Co
     until(lambda: not cockpit.observer.now.armed, what="the disarming")
 
 
-def test_a_reloaded_page_must_press_again(page: Page, cockpit: Cockpit) -> None:
+def test_a_reloaded_page_must_press_again(fresh_page: Page, cockpit: Cockpit) -> None:
     """A key that is held while the robot is armed moves nothing: only a press after arming does."""
-    page.keyboard.down("ArrowUp")
+    fresh_page.keyboard.down("ArrowUp")
     until(lambda: cockpit.observer.now.ack > 3, what="sticks")
-    page.evaluate("overreach.buttons.arm()")
+    fresh_page.evaluate("overreach.buttons.arm()")
     until(lambda: cockpit.observer.now.verdict == "regrip", what="the demand for a new press")
     assert cockpit.observer.speed() == 0.0
-    page.keyboard.up("ArrowUp")
+    fresh_page.keyboard.up("ArrowUp")
 
 
 def test_a_gamepad_that_was_let_go_of_must_come_to_its_centre(context: BrowserContext, cockpit: Cockpit) -> None:

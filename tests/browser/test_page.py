@@ -18,9 +18,9 @@ from tests.processes import until
 pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 
 
-def test_no_external_request(page: Page, cockpit: Cockpit) -> None:
+def test_no_external_request(fresh_page: Page, cockpit: Cockpit) -> None:
     """The page asks nobody but its own server for anything, and nothing goes wrong in it."""
-    page.wait_for_timeout(1000)
+    fresh_page.wait_for_timeout(1000)
     foreign = [url for url in cockpit.requests if not url.startswith((cockpit.url, "data:", "blob:"))]
     assert foreign == []
     assert len(cockpit.requests) > 10

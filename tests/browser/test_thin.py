@@ -233,14 +233,14 @@ def test_a_link_that_stalls(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None
 
 
 def test_a_silent_robot_is_not_a_late_link(context: BrowserContext, fresh_cockpit: Cockpit) -> None:
-    """A robot side that says nothing for 3 s is called silent, not late; then the page knows how old things are."""
+    """A robot side that says nothing for 2 s is called silent, not late; then the page knows how old things are."""
     cockpit = fresh_cockpit
     page = cockpit.watch(context.new_page())
     page.evaluate(f"void (() => {{ {LISTEN} }})()")
     cockpit.robot.process.send_signal(signal.SIGSTOP)
     try:
         until(lambda: "silent" in page.inner_text("#verdict-reason"), what="the words")
-        page.wait_for_timeout(3000)
+        page.wait_for_timeout(1500)
     finally:
         cockpit.robot.process.send_signal(signal.SIGCONT)
     until(lambda: page.inner_text("#verdict-word") == "Disarmed", what="news of it")

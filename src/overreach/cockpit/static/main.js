@@ -178,6 +178,6 @@ attachKeys(stick, buttons);
 const gamepads = new Gamepads(stick, buttons);
 new Inputs(stick, gamepads);
 
-window.overreach = { page, link, stick, view, plots, buttons, gamepads, fitness };
+window.overreach = { page, panel, link, stick, view, plots, buttons, gamepads, fitness };
 document.documentElement.dataset.ready = "true";
 if (wasPending()) buttons.stop();
