@@ -4,6 +4,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+comma := ,
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .PHONY: drive reproduce test venv lint types bench mutate browser headline clean
@@ -41,23 +42,25 @@ headline: reproduce
 browser: $(VENV)/.ready-dev
 	$(BIN)/python tests/browser/install.py
 
+# Each brings what the ones before it bring, in one go.
+define install
+@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "overreach needs Python 3.11 or newer; choose one with: make PYTHON=python3.12"; exit 1; }
+$(PYTHON) -m venv $(VENV)
+$(PIP) install -c constraints.txt -e '$(1)'
+@touch $(2:%=$(VENV)/%)
+endef
+
 $(VENV)/.ready: pyproject.toml constraints.txt
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "overreach needs Python 3.11 or newer; choose one with: make PYTHON=python3.12"; exit 1; }
-	$(PYTHON) -m venv $(VENV)
-	$(PIP) install -c constraints.txt -e .
-	@touch $@
+	$(call install,.,.ready)
 
-$(VENV)/.ready-all: $(VENV)/.ready
-	$(PIP) install -c constraints.txt -e '.[all]'
-	@touch $@
+$(VENV)/.ready-all: pyproject.toml constraints.txt
+	$(call install,.[all],.ready .ready-all)
 
-$(VENV)/.ready-dev: $(VENV)/.ready-all
-	$(PIP) install -c constraints.txt -e '.[dev]'
-	@touch $@
+$(VENV)/.ready-dev: pyproject.toml constraints.txt
+	$(call install,.[all$(comma)dev],.ready .ready-all .ready-dev)
 
-$(VENV)/.ready-mutate: $(VENV)/.ready-dev
-	$(PIP) install -c constraints.txt -e '.[mutate]'
-	@touch $@
+$(VENV)/.ready-mutate: pyproject.toml constraints.txt
+	$(call install,.[all$(comma)dev$(comma)mutate],.ready .ready-all .ready-dev .ready-mutate)
 
 clean:
 	rm -rf $(VENV) dist build report .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -202,7 +202,7 @@ def test_a_held_button_as_dead_man(pads: Pads, cockpit: Cockpit) -> None:
     page, observer = pads.page, cockpit.observer
     arm(page, observer)
     pads.make(0)
-    page.select_option("#deadman", "button")
+    page.click('#deadman [data-value="button"]')
     pads.put(0, 0.0, 1.0)
     page.wait_for_timeout(200)
     assert observer.speed() == 0.0
@@ -227,7 +227,7 @@ def test_a_held_button_as_dead_man(pads: Pads, cockpit: Cockpit) -> None:
     pads.lift(1, 4)
     page.reload()
     page.wait_for_function("window.overreach?.page.state")
-    assert page.input_value("#deadman") == "button"
+    assert page.get_attribute('#deadman [data-value="button"]', "aria-pressed") == "true"
     page.evaluate("localStorage.clear()")
 
 

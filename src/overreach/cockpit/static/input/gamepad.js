@@ -2,7 +2,7 @@
 // A self-centring stick is its own dead-man, or a held button is (a setting). After any release, and at the start, a pad
 // must be seen at its centre (with the button up) before it counts again, and it takes the hold from no other input.
 
-import { Asking, keep, layoutOf, read } from "./layouts.js";
+import { Asking, downs, keep, layoutOf, read } from "./layouts.js";
 
 const DEAD = 0.24; // below this a stick is let go of: as wide as XInput's dead zone for the left stick (7849 of 32767)
 const TAKE = 0.27; // above this it takes hold
@@ -58,13 +58,13 @@ export class Gamepads {
 
   follow(slot, one, pad) {
     const layout = one.layout = layoutOf(pad);
-    const pressed = one.presses(pad);
+    const presses = one.presses(pad);
     if (this.asking?.slot === slot) return this.ask(one, pad);
     // Which button is which is not known of the others: there, every one of them stops.
-    if (layout ? pressed.includes(layout.stop) : pressed.length) this.buttons.stop();
+    if (layout ? presses.includes(layout.stop) : presses.length) this.buttons.stop();
     if (!layout) return;
     const away = document.hidden || !document.hasFocus(); // browsers tell of gamepads to windows that nobody looks at, too
-    if (pressed.includes(layout.arm) && one.settled && !away) this.buttons.arm();
+    if (presses.includes(layout.arm) && one.settled && !away) this.buttons.arm();
     one.settled ||= !pad.buttons[layout.arm]?.pressed;
 
     [one.x, one.y] = [read(pad, layout.x), read(pad, layout.y)];
@@ -114,15 +114,15 @@ class Known {
     this.settled = false; // whether its arm button has been seen up: one that is stuck arms nothing
     this.x = this.y = 0;
     // Browsers show a pad only once a button is pressed: that press may be a Stop. Not so where any button would be one.
-    this.down = this.layout ? [] : pad.buttons.map((button) => button.pressed);
+    this.down = this.layout ? [] : downs(pad);
   }
 
   // The buttons that have gone down since the last look.
   presses(pad) {
-    const down = pad.buttons.map((button) => button.pressed);
-    const pressed = down.flatMap((is, k) => (is && !this.down[k] ? [k] : []));
+    const down = downs(pad);
+    const newly = down.flatMap((is, k) => (is && !this.down[k] ? [k] : []));
     this.down = down;
-    return pressed;
+    return newly;
   }
 
   get name() {

@@ -23,6 +23,9 @@ export function keep(id, layout) {
   keepSetting(NAME, JSON.stringify(own));
 }
 
+// Which buttons are down; some entries have holes where a button should be.
+export const downs = (pad) => Array.from(pad.buttons, (button) => Boolean(button?.pressed));
+
 export const read = (pad, [axis, sign]) => sign * (pad.axes[axis] ?? 0) || 0;
 
 const FAR = 0.6; // an axis that has gone this far from where it was is meant
@@ -43,7 +46,7 @@ export class Asking {
     this.layout = {};
     this.step = 0;
     this.moved = null; // [axis, sign] that has gone far and is not back yet
-    this.was = pad.buttons.map((button) => button.pressed);
+    this.was = downs(pad);
   }
 
   get say() {
@@ -53,7 +56,7 @@ export class Asking {
   look(pad) {
     const { takes, part } = STEPS[this.step];
     const found = takes === "axis" ? this.axis(pad) : this.button(pad);
-    this.was = pad.buttons.map((button) => button.pressed);
+    this.was = downs(pad);
     if (found === null) return null;
     this.layout[part] = part === "hold" ? [found] : found;
     this.step += 1;
@@ -75,7 +78,7 @@ export class Asking {
 
   button(pad) {
     const used = [this.layout.stop, this.layout.arm];
-    const k = pad.buttons.findIndex((button, one) => button.pressed && !this.was[one] && !used.includes(one));
+    const k = downs(pad).findIndex((is, one) => is && !this.was[one] && !used.includes(one));
     return k >= 0 ? k : null;
   }
 }

@@ -12,15 +12,15 @@ export class Inputs {
     this.stick = stick;
     this.gamepads = gamepads;
     this.rows = new Map();
-    this.setting($("expo"), "expo", String(USUAL_EXPO), (value) => {
+    this.range($("expo"), "expo", String(USUAL_EXPO), (value) => {
       stick.expo = Number(value);
       $("expo-value").textContent = Number(value).toFixed(1);
     });
-    this.setting($("deadman"), "deadman", "stick", (value) => (gamepads.button = value === "button"));
+    this.either($("deadman"), "deadman", "stick", (value) => (gamepads.button = value === "button"));
     setInterval(() => this.show(), LOOK_MS);
   }
 
-  setting(control, name, usual, use) {
+  range(control, name, usual, use) {
     const value = kept(name, usual);
     control.value = value;
     if (control.value !== value) control.value = usual;
@@ -29,6 +29,23 @@ export class Inputs {
       keep(name, control.value);
       use(control.value);
     });
+  }
+
+  // One of a few buttons. Not a list that opens: while the browser's own is open, no key reaches the page, nor does Stop.
+  either(group, name, usual, use) {
+    const buttons = [...group.querySelectorAll("button")];
+    const choose = (value) => {
+      for (const button of buttons) button.setAttribute("aria-pressed", button.dataset.value === value);
+      use(value);
+    };
+    const value = kept(name, usual);
+    choose(buttons.some((button) => button.dataset.value === value) ? value : usual);
+    for (const button of buttons) {
+      button.addEventListener("click", () => {
+        keep(name, button.dataset.value);
+        choose(button.dataset.value);
+      });
+    }
   }
 
   show() {
