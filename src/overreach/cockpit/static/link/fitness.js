@@ -2,7 +2,7 @@
 // drive, it waits twice as long before it does so again.
 
 export const LATE_MS = 500; // later than this, nobody drives from here
-const WELL_MS = 300; // at most this late, for a while, and it is good again
+export const WELL_MS = 300; // at most this late, for a while, and it is good again
 const FIRST_MS = 1000;
 const LONGEST_MS = 60000;
 const FORGET_MS = 60000; // good for this long, and the waiting starts anew at FIRST_MS

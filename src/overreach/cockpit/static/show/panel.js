@@ -1,5 +1,7 @@
 // What the page says in words and numbers: verdict, authority, readout, and which buttons make sense.
 
+import { WELL_MS } from "../link/fitness.js";
+
 const NUMBERS_MS = 120;
 const TOLD_MS = 2500;
 const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
@@ -87,7 +89,8 @@ export class Panel {
 
   // How late what is seen, or what is said, is now [ms], and whether one may drive by that.
   late(ms, good) {
-    this.viewOnly = good ? "" : `${ms.toFixed(0)} ms late: nobody drives from here until it is better.`;
+    const why = ms > WELL_MS ? `${ms.toFixed(0)} ms late: nobody drives from here until it is better.` : "It was late: nobody drives from here until it has been better for a while.";
+    this.viewOnly = good ? "" : why;
     const now = performance.now();
     if (now - this.delay < NUMBERS_MS) return;
     this.delay = now;
