@@ -45,7 +45,7 @@ class Relay:
         self._pictures = 0
         self._newest = 0.0, self._clock.now()
         """The time of the newest state, 0 before the first, and when it came [s]."""
-        self._told = ""
+        self._trouble = ""
         """Why there is no robot side to speak to, if it is known."""
         self._changing = asyncio.Lock()
         self._stopper = ThreadPoolExecutor(1, "stop")
@@ -92,17 +92,17 @@ class Relay:
         while True:
             await asyncio.sleep(SILENT_S)
             if self._clock.now() - self._newest[1] < SILENT_S:
-                self._told = ""
+                self._trouble = ""
                 continue
             try:
                 found = await asyncio.to_thread(self._link.seek)
                 if found is not None:
                     self._take_over(found)
             except LinkError as error:
-                if str(error) != self._told:
-                    self._told = str(error)
+                if str(error) != self._trouble:
+                    self._trouble = str(error)
                     for page in self._pages:
-                        page.say(_unasked(self._told))
+                        page.say(_unasked(self._trouble))
             except Exception as error:  # of the network's library, which has more than it names: there is a next time
                 print(f"overreach: the robot side could not be looked for ({told(error)})", file=sys.stderr)
 
@@ -143,8 +143,8 @@ class Relay:
         """Serve one page until it is gone; then let go of the robot and disarm for it."""
         page = Visitor(socket, self._clock)
         page.say(wire.encode(self._greeting(page)))
-        if self._told:
-            page.say(_unasked(self._told))
+        if self._trouble:
+            page.say(_unasked(self._trouble))
         self._pages.add(page)
         sender = asyncio.create_task(page.send_forever())
         try:
