@@ -38,20 +38,35 @@ class Pads:
     def make(self, index: int, **more: Any) -> None:
         """Connect a pad, or another in its place."""
         self.page.evaluate(f"void make({index}, {json.dumps(more)})")
-        self.page.wait_for_timeout(60)
+        self.seen(f"overreach.gamepads.pads.get({index})?.id === pads[{index}].id")
+
+    def seen(self, what: str) -> None:
+        """Wait until the page has looked."""
+        self.page.wait_for_function(f"() => {what}", polling=10)
 
     def put(self, index: int, x: float, y: float) -> None:
         """Move its left stick: x right, y up."""
         self.page.evaluate(f"void put({index}, {x}, {-y})")
-        self.page.wait_for_timeout(60)
+        if self.page.evaluate(f"pads[{index}].mapping") == "standard":
+            known = f"overreach.gamepads.pads.get({index})"
+            self.seen(f"{known}.x === {x} && {known}.y === {y}")
+        self.page.wait_for_timeout(40)
 
     def press(self, index: int, button: int) -> None:
         self.page.evaluate(f"down({index}, {button})")
-        self.page.wait_for_timeout(60)
+        self.seen(f"overreach.gamepads.pads.get({index}).down[{button}]")
 
     def lift(self, index: int, button: int) -> None:
         self.page.evaluate(f"down({index}, {button}, false)")
-        self.page.wait_for_timeout(60)
+        self.seen(f"!overreach.gamepads.pads.get({index}).down[{button}]")
+
+    def shows(self, axis: int, to: int) -> None:
+        """Push an axis and let go, each as soon as the page that asks for it has seen it."""
+        step = self.page.evaluate("overreach.gamepads.asking.step")
+        self.page.evaluate(f"void (pads[0].axes[{axis}] = {to})")
+        self.seen("overreach.gamepads.asking.moved")
+        self.page.evaluate(f"void (pads[0].axes[{axis}] = 0)")
+        self.seen(f"overreach.gamepads.asking.step === {step + 1}")
 
     def said(self) -> str:
         """What the page says of them."""
@@ -170,13 +185,9 @@ def test_unknown_layouts(pads: Pads, cockpit: Cockpit) -> None:
 
     page.click("#pads button")
     assert "forward" in pads.said()
-    for value in (-1, 0):  # forward is its axis 3, to the right its axis 2
-        page.evaluate(f"void (pads[0].axes[3] = {value})")
-        page.wait_for_timeout(80)
+    pads.shows(3, -1)  # forward is its axis 3, to the right its axis 2
     assert "right" in pads.said()
-    for value in (1, 0):
-        page.evaluate(f"void (pads[0].axes[2] = {value})")
-        page.wait_for_timeout(80)
+    pads.shows(2, 1)
     for word, button in (("stop", 2), ("arm", 8), ("dead-man", 6)):
         assert word in pads.said()
         pads.press(0, button)
