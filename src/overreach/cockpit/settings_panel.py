@@ -152,7 +152,8 @@ class SettingsPanel:
         def changed(ends: dict[str, float]) -> Change:
             def change(settings: Settings) -> Settings:
                 space = _with(settings.workspace, **{low: ends["min"], high: ends["max"]})
-                return _with(settings, workspace=space)  # type: ignore[no-any-return]  # msgspec's replace is untyped
+                wanted: Settings = _with(settings, workspace=space)
+                return wanted
 
             return change
 

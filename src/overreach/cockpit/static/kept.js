@@ -1,18 +1,23 @@
-// What this browser keeps of the page's own settings. Private windows may refuse: a choice then holds for this page only.
+// What this browser keeps of the page's own: for good, or in `SESSION` for as long as the tab is open. Private windows
+// may refuse: a choice then holds for this page only.
 
+export const SESSION = "sessionStorage";
+const FOR_GOOD = "localStorage";
 const full = (name) => `overreach-${name}`;
 
-export function kept(name, usual = null) {
+export function kept(name, usual = null, where = FOR_GOOD) {
   try {
-    return localStorage.getItem(full(name)) ?? usual;
+    return window[where].getItem(full(name)) ?? usual;
   } catch {
     return usual;
   }
 }
 
-export function keep(name, value) {
+// Keep a text; null forgets it.
+export function keep(name, value, where = FOR_GOOD) {
   try {
-    localStorage.setItem(full(name), value);
+    if (value === null) window[where].removeItem(full(name));
+    else window[where].setItem(full(name), value);
   } catch {
     // See above.
   }

@@ -5,6 +5,7 @@ import { attachKeys } from "./input/keys.js";
 import { attachPad } from "./input/pad.js";
 import { Stick } from "./input/stick.js";
 import { attachStop } from "./input/stop.js";
+import { keep, kept, SESSION } from "./kept.js";
 import { Fitness } from "./link/fitness.js";
 import { Link } from "./link/link.js";
 import { Inputs } from "./show/inputs.js";
@@ -104,23 +105,7 @@ async function ask(what) {
   return answer;
 }
 // A stop that is not confirmed yet outlives the page: its library reloads it after a longer outage.
-const PENDING = "overreach-stop";
-function pending(is) {
-  try {
-    if (is) sessionStorage.setItem(PENDING, "1");
-    else sessionStorage.removeItem(PENDING);
-    return is;
-  } catch {
-    return is; // some private windows keep nothing
-  }
-}
-function wasPending() {
-  try {
-    return sessionStorage.getItem(PENDING) !== null;
-  } catch {
-    return false;
-  }
-}
+const PENDING = "stop";
 
 const buttons = {
   // A stop is asked for again until the robot side confirms it, by its answer or its state, across lost connections too.
@@ -128,7 +113,7 @@ const buttons = {
     stick.release();
     if (page.stopping) return;
     page.stopping = true;
-    pending(true);
+    keep(PENDING, "1", SESSION);
     const before = page.state?.t ?? 0;
     const stopped = () => page.state?.stopped && page.state.t > before;
     while (!(await link.ask("stop")).done && !stopped()) {
@@ -136,7 +121,7 @@ const buttons = {
       await new Promise((resolve) => setTimeout(resolve, STOP_AGAIN_MS));
     }
     page.stopping = false;
-    pending(false);
+    keep(PENDING, null, SESSION);
   },
   async arm() {
     if (stick.barred) return panel.tell("Not done", stick.barred);
@@ -180,4 +165,4 @@ new Inputs(stick, gamepads);
 
 window.overreach = { page, panel, link, stick, view, plots, buttons, gamepads, fitness };
 document.documentElement.dataset.ready = "true";
-if (wasPending()) buttons.stop();
+if (kept(PENDING, null, SESSION)) buttons.stop();

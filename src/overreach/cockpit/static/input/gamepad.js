@@ -13,7 +13,7 @@ export class Gamepads {
     this.stick = stick;
     this.buttons = buttons;
     this.button = false; // whether a held button is the dead-man
-    this.pads = new Map(); // by index: what is known of each
+    this.pads = new Map(); // by slot: what is known of each
     this.holds = null; // the one that holds the stick
     this.asking = null; // of which pad the layout is being asked
     setInterval(() => this.look(), POLL_MS);

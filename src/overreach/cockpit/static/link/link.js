@@ -104,7 +104,7 @@ export class Link {
 
   beat() {
     const now = performance.now();
-    const patience = this.ready ? DEAF_MS : OPENING_MS;
+    const patience = this.socket.readyState === WebSocket.CONNECTING ? OPENING_MS : DEAF_MS;
     if (this.socket.readyState !== WebSocket.CLOSED && now - this.heardAt > patience) {
       const deaf = this.socket; // a close may take its time to be told: what comes of it is not waited for
       deaf.onclose = deaf.onmessage = null;
