@@ -10,7 +10,7 @@ from pathlib import Path
 
 from benchmarks.measure import Promise
 
-NAMES = ("law", "startup", "loop", "pad", "resources")
+NAMES = ("law", "startup", "loop", "hosted", "pad", "resources")
 
 
 def main() -> None:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 from hypothesis import HealthCheck, Phase, settings
 
+from tests.reached import Reached
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
@@ -18,6 +20,26 @@ settings.register_profile("overreach", derandomize=True, deadline=None, suppress
 # For mutants any counterexample will do: it need not be the smallest.
 settings.register_profile("mutate", settings.get_profile("overreach"), phases=[Phase.explicit, Phase.generate])
 settings.load_profile("overreach")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Two options of `make faults`."""
+    parser.addoption("--full", action="store_true", help="try every fault as often as is promised, and write it down")
+    parser.addoption("--seed", type=int, default=1, help="of the random times at which faults come")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what `make faults` runs: every test that says what it reached."""
+    for item in items:
+        if "reached" in getattr(item, "fixturenames", ()):
+            item.add_marker("fault")
+
+
+@pytest.fixture
+def reached(request: pytest.FixtureRequest) -> Reached:
+    """How often to try, and where to say what was reached."""
+    option = request.config.getoption
+    return Reached(request.node.nodeid, option("--full"), option("--seed"))
 
 
 @pytest.fixture(scope="session")

@@ -101,6 +101,9 @@ class Driver:
         self.stopped += 1
         self.robot.stop(now)
 
+    def arm(self, now: float) -> None:
+        self.robot.arm(now)
+
     def restart(self, now: float) -> None:
         self.robot.restart(now)
 

@@ -121,6 +121,7 @@ class _Mine:
     def read(self, now): return self._robot.read(now)
     def write(self, base, joints, gripper, now, deadline): self._robot.write(base, joints, gripper, now, deadline)
     def stop(self, now): self._robot.stop(now)
+    def arm(self, now): self._robot.arm(now)
     def restart(self, now): raise RuntimeError("a real robot is not put back")
 
 def mine(now):

@@ -26,6 +26,7 @@ ARROWS: dict[str, set[str]] = {
     "verdicts": set(),
     "requests": set(),
     "clock": set(),
+    "priority": set(),
     "types": {"verdicts"},
     "extras": {"errors"},
     "parameters": {"errors", "types"},
@@ -38,11 +39,12 @@ ARROWS: dict[str, set[str]] = {
     "plugs": {"errors", "parameters", "model", "law"},
     "control": {"errors", "verdicts", "requests", "types", "gate", "arm", "model", "law"},
     "robots": {"errors", "types", "model", "plugs"},
+    "host": {"errors", "clock", "priority", "types", "gate", "model", "robots"},
     "testing": {"verdicts", "clock", "types", "arm", "model", "law", "robots"},
     "link": {"errors", "requests", "clock", "types", "parameters", "gate", "arm", "model"},
     "robot_side": {
-        "errors", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law", "plugs", "control",
-        "robots", "link",
+        "errors", "requests", "clock", "priority", "types", "parameters", "gate", "arm", "model", "law", "plugs",
+        "control", "robots", "host", "link",
     },
     "cockpit": {"errors", "clock", "requests", "types", "parameters", "plugs", "robots", "link", "robot_side"},
     "run": {
@@ -229,7 +231,7 @@ def test_nothing_that_moves_a_robot_can_switch_the_bounds_off() -> None:
         "pilot": {"model", "law", "limits"},
         "tick": {"state", "command", "now", "dt"},
         "loop": {"robot", "link", "clock", "rate", "law"},
-        "run": {"robot", "listen", "rate", "parent", "name", "law"},
+        "run": {"robot", "listen", "rate", "parent", "name", "law", "hosted"},
         "guard": {"channels", "ramp_s"},
         "write": {"wanted", "motion", "dt"},
     }

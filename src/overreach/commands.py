@@ -25,6 +25,7 @@ def drive(
     browser: bool = True,
     law: str = "exact",
     set: tuple[str, ...] = (),
+    hosted: bool = True,
 ) -> None:
     """Start a simulated robot and the page to drive it with; open a browser where there is one.
 
@@ -37,10 +38,11 @@ def drive(
         browser: Whether to open a browser.
         law: Name of the law it starts with (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
+        hosted: Whether the robot runs in a process of its own, which brings it to rest if the loop hangs or dies.
     """
     from overreach.cockpit.drive import run_drive
 
-    run_drive(robot, host, port, rate, browser, law, set, allow_host)
+    run_drive(robot, host, port, rate, browser, law, set, allow_host, hosted)
 
 
 @app.command
@@ -51,6 +53,7 @@ def robot(
     name: str = "",
     law: str = "exact",
     set: tuple[str, ...] = (),
+    hosted: bool = True,
     parent: int | None = None,
 ) -> None:
     """Run the robot side: loop, gate, law and robot. A cockpit connects to it.
@@ -62,13 +65,14 @@ def robot(
         name: Its name in the network, by default the robot's own; two robots need two names.
         law: Name of the law it starts with (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
+        hosted: Whether the robot runs in a process of its own, which brings it to rest if the loop hangs or dies.
         parent: End when this process, which started this one, ends.
     """
     from overreach.link.messages import Choice
     from overreach.parameters import assignments
     from overreach.robot_side.process import run_robot
 
-    run_robot(robot, listen, rate, parent, name, Choice(law, dict(assignments(set))))
+    run_robot(robot, listen, rate, parent, name, Choice(law, dict(assignments(set))), hosted)
 
 
 @app.command

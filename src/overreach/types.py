@@ -174,13 +174,23 @@ class Plan(Record, frozen=True):
     joints: tuple[float, ...] | None = None
 
 
+class Takeover(Record, frozen=True):
+    """What a robot's host has made of writes that came too late: it ramps to zero by itself.
+
+    rates: those that it wrote last, channel by channel; latched: whether nothing counts until the loop arms anew.
+    """
+
+    rates: tuple[float, ...]
+    latched: bool
+
+
 class RobotState(Record, frozen=True):
     """What a robot with any number of joints reports.
 
     t: the robot's own time stamp [s]; pose: of the base in the world; motion: measured twist of the base in its own
     frame, all six components (a base that rocks rocks the hand); q, dq: joints [rad, m] and their rates, from the
     shoulder out; gripper: its opening, 0 to 1; ages: age [s] at t of the base's and of the joints' measurements;
-    delay: dead time [s] of what is written, if it is known.
+    delay: dead time [s] of what is written, if it is known; takeover: None while what was written last is what stands.
     """
 
     t: float
@@ -191,6 +201,7 @@ class RobotState(Record, frozen=True):
     gripper: float = 0.0
     ages: tuple[float, float] = (0.0, 0.0)
     delay: float = 0.0
+    takeover: Takeover | None = None
 
     @classmethod
     def flat(
@@ -252,7 +263,7 @@ class RobotState(Record, frozen=True):
         q, dq = [tuple([float(number + 0.0) for number in one]) for one in (self.q, self.dq)]
         pose = Pose(*numbers[:-6])
         pose = pose if pose.heading is not None else msgspec.structs.replace(pose, heading=pose.yaw)
-        return RobotState(t, pose, Twist(*numbers[-6:]), q, dq, gripper, (base, joints), delay)
+        return RobotState(t, pose, Twist(*numbers[-6:]), q, dq, gripper, (base, joints), delay, self.takeover)
 
 
 class Decision(Record, frozen=True):

@@ -42,6 +42,10 @@ class Verdict(enum.StrEnum):
     ENDING = "ending", "Ending", "The robot side was told to end: the robot comes to rest.", "stop"
     FAULT = "fault", "Fault", "Press Reset, then Arm.", "stop"
     STOPPED = "stopped", "Stopped", "Press Reset, then Arm.", "stop"
+    PAUSED = (
+        "paused", "Disarmed",
+        "The robot side was held up, so the robot came to rest by itself. Press Arm, then hold the pad.", "warn",
+    )  # fmt: skip
     DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad.", "down"
     LOST = "lost", "Link lost", "No command for 1 s. Let go and press again.", "warn"
     REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again.", "warn"

@@ -58,6 +58,9 @@ class Altered:
         base, joints = self._write(BaseTwist(0.0, 0.0, 0.0), (0.0, 0.0))
         self._robot.write(base, joints, None, now, now)
 
+    def arm(self, now: float) -> None:
+        self._robot.arm(now)
+
     def restart(self, now: float) -> None:
         self._robot.read(now)
 
@@ -124,5 +127,5 @@ def test_a_robot_that_lacks_a_part_is_found_out() -> None:
         model, simulated = planar(), True
 
     made: Callable[[float], Robot] = lambda now: Partial()  # type: ignore[assignment,return-value]  # noqa: E731
-    with pytest.raises(AssertionError, match="lacks read, write, stop, restart"):
+    with pytest.raises(AssertionError, match="lacks read, write, arm, stop, restart"):
         check_robot(made)

@@ -73,11 +73,13 @@ def _exit_on_signals() -> None:
 
 
 @contextmanager
-def robot_process(robot: str, rate: float, law: Sequence[str] = ()) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+def robot_process(
+    robot: str, rate: float, options: Sequence[str] = ()
+) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
     """Run the robot side in a process of its own; yield its endpoint and the process, which ends with the block."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "overreach", "robot", robot, "--listen", endpoint]
-    command += ["--rate", str(rate), "--parent", str(os.getpid()), *law]
+    command += ["--rate", str(rate), "--parent", str(os.getpid()), *options]
     # A session of its own: Ctrl-C reaches the operator side alone, which then ends this one in order.
     process = subprocess.Popen(command, start_new_session=True)
     try:
@@ -100,10 +102,12 @@ def run_drive(
     law: str = "exact",
     changes: Sequence[str] = (),
     allowed: Sequence[str] = (),
+    hosted: bool = True,
 ) -> None:
     """Run both halves until Ctrl-C or SIGTERM, or until one of them ends.
 
-    changes: parameters of the law, NAME=VALUE; allowed: further names that the page is served under.
+    changes: parameters of the law, NAME=VALUE; allowed: further names that the page is served under; hosted: whether
+    the robot runs in a process of its own.
     """
     from overreach.cockpit.origin import check_host_name
     from overreach.parameters import assignments
@@ -116,7 +120,7 @@ def run_drive(
     load_law(law, assignments(changes))
     hosts = [host, *map(check_host_name, allowed)]
     _exit_on_signals()
-    given = ["--law", law, *(["--set", *changes] if changes else [])]
+    given = ["--law", law, *(["--set", *changes] if changes else []), *([] if hosted else ["--no-hosted"])]
     with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate, given) as (endpoint, process):
         _operate(endpoint, page, hosts, browser, lambda: process.poll() is not None)
         if process.poll() is not None:

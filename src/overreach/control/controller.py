@@ -18,7 +18,7 @@ from overreach.law.authority import arm_residual
 from overreach.law.body import Planner, UnusableError, WholeBody, checked
 from overreach.law.frame import FRAMES, heading_rate, meant
 from overreach.model.model import Model, channels
-from overreach.types import FLOATS, Decision, Frame, HandTwist, PolarState, RobotState, Split, Twist
+from overreach.types import FLOATS, Decision, Frame, HandTwist, PolarState, RobotState, Split, Takeover, Twist
 from overreach.verdicts import Motion, Verdict, weightier
 
 NO_TWIST, NO_MOTION = Twist(), HandTwist()
@@ -83,6 +83,22 @@ class HandController:
         if self.guard.fault:
             self._feedback.reset()
         self.guard.reset()
+
+    def go_on(self, takeover: Takeover) -> bool:
+        """Go on from the rates that the robot's host wrote by itself; say whether it is latched. Raises nothing."""
+        try:
+            rates = [float(rate) for rate in takeover.rates]
+            keeps = [abs(rate) <= each.rate_max for rate, each in zip(rates, self.guard.channels, strict=True)]
+            if not all(keeps):
+                raise ValueError("rates beyond their limits")
+        except Exception as error:  # a plug-in driver may report anything
+            self.guard.latch(f"What the robot's host has written by itself cannot be used: {told(error)}.")
+            return True
+        self.guard.written = tuple(rates)
+        self._feedback.asked.add(self.guard.written, self._now)
+        if takeover.latched:
+            self._feedback.reset()
+        return takeover.latched
 
     def locate(self, state: RobotState) -> PolarState:
         """Return where the hand is, seen from the shoulder, and its heading."""

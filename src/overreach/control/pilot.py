@@ -113,6 +113,9 @@ class Pilot:
 
         state: what the robot reports, or None; command: the newest message that came since the last tick, or None.
         """
+        takeover = getattr(state, "takeover", None)  # a plug-in driver may report anything
+        if takeover is not None and self.controller.go_on(takeover):
+            self.gate.pause()
         gated = self._gated(command, now, dt)
         decided = self.controller.decide(state, gated.twist, dt, now, gated.motion, gated.frame)
         if decided.fault:

@@ -120,6 +120,11 @@ class Gate:
         latch.arm(operator, max(grip, pressed))
         return None
 
+    def pause(self) -> None:
+        """Disarm at once: the robot's host brings it to rest, whatever is asked for."""
+        self.latch.pause()
+        self._twist = STILL
+
     def accept(self, said: Command, now: float) -> Verdict | None:
         """Take a message that arrived at `now` [s]; return why it is refused, or None.
 
@@ -184,7 +189,7 @@ class Gate:
         if latch.stopped:
             return STILL, Verdict.STOPPED
         if not latch.armed:
-            return STILL, Verdict.DISARMED
+            return STILL, Verdict.PAUSED if latch.paused else Verdict.DISARMED
         if said is None or said.operator != latch.operator or not said.held:
             return STILL, Verdict.RELEASED
         age = now - self._fresh_at

@@ -3,6 +3,7 @@
     start -> DISARMED --arm--> ARMED --(release, press)--> MOVING
     any --stop--> STOPPED --reset--> DISARMED
     any --fail--> FAULT --reset--> DISARMED
+    any --pause--> DISARMED
 
 A press of the dead-man is identified by its number (`grip`, counted by the operator's side), not by an
 edge, because on a latest-wins link the release between two presses may never arrive.
@@ -22,6 +23,8 @@ class StopLatch:
         self.fault = ""
         """Why the guard has stopped the robot; empty if it has not."""
         self.armed = False
+        self.paused = False
+        """Whether the robot came to rest by itself because writes stopped coming, and nobody has armed since."""
         self.operator = 0
         """Session of the operator who armed; 0 while there is none."""
         self.spent_grip = 0
@@ -35,6 +38,11 @@ class StopLatch:
     def fail(self, reason: str) -> None:
         """Latch a fault, for `reason`; the first one stays."""
         self.fault = self.fault or reason
+        self.armed = False
+
+    def pause(self) -> None:
+        """Take note that the robot's host is latched: only arming leads on."""
+        self.paused = True
         self.armed = False
 
     @property
@@ -52,6 +60,7 @@ class StopLatch:
         """Arm for `operator`, unless latched; their presses up to number `grip` do not count."""
         if not self.latched:
             self.armed = True
+            self.paused = False
             self.operator = operator
             self.spent_grip = grip
 

@@ -21,7 +21,7 @@ from overreach.parameters import Parameter
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
 from overreach.types import BaseTwist, Command, Frame, Pose, Twist
 
-PROTOCOL = 3
+PROTOCOL = 4
 """Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
 
 LONGEST = 4096
@@ -151,8 +151,9 @@ class State(msgspec.Struct, frozen=True, gc=False):
     let through; forward [rad]: where x of the frame in the settings points, as a heading in the world. l, psi,
     theta_e, mu, sigma, v_m, w_m and base: as in `types`; pose: of the base; joints [rad, m]; hand: its position in
     the world [m]; velocity: its true velocity in the world [m/s]; links: the arm as a line through points in the
-    world [m]. State at t, rates from t on. late_p50, late_p99, late_max [us]: the loop's lateness over the last
-    second. revision: another number after every change of the settings and every start.
+    world [m]. State at t, rates from t on. Of the last second: late_p50, late_p99, late_max [us]: how late the loop's
+    ticks began; apart_p99, apart_max [us]: by how much more than a period two writes were apart. revision: another
+    number after every change of the settings and every start.
     """
 
     t: float
@@ -187,6 +188,8 @@ class State(msgspec.Struct, frozen=True, gc=False):
     late_p50: float
     late_p99: float
     late_max: float
+    apart_p99: float
+    apart_max: float
     overruns: int
     refused: int
     revision: int

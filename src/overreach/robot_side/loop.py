@@ -29,7 +29,7 @@ from overreach.requests import ArmRequest, Request, RestartRequest
 from overreach.robot_side.report import Reporter
 from overreach.robot_side.settings import Builder, Built, build, usual
 from overreach.robot_side.welcome import Reception
-from overreach.robots.base import Robot
+from overreach.robots.base import Robot, sentence
 from overreach.types import Command, RobotState
 
 STATE_PERIOD_S = 1.0 / 60.0
@@ -39,6 +39,8 @@ FORGIVEN = 0.1
 """A decision longer than a period adds 1 to a count; any other takes FORGIVEN off it. At SLOW_MOST it is a fault."""
 HUNG_S = 0.05
 """A decision that takes this long [s] is a fault by itself."""
+GOOD_PERIODS = 2.0
+"""What is written is good for this many periods: then the robot's host, if it has one, ramps to zero."""
 EXACT = Choice("exact")
 
 
@@ -136,14 +138,16 @@ class Loop:
         try:
             return self._robot.read(now)
         except Exception as error:  # a driver may raise anything
-            self.pilot.fail(f"The robot could not be read: {told(error)}.")
+            self.pilot.fail(sentence("read", error))
             return None
 
     def _write(self, tick: Tick) -> None:
+        now = self._clock.now()
+        self._reporter.wrote(now, tick.dt)
         try:
-            self._robot.write(tick.base, tick.joints, tick.gripper, tick.now, tick.now + 2.0 * tick.dt)
+            self._robot.write(tick.base, tick.joints, tick.gripper, tick.now, now + GOOD_PERIODS * tick.dt)
         except Exception as error:  # as above; what is written next is on the way to zero
-            self.pilot.fail(f"The robot could not be written to: {told(error)}.")
+            self.pilot.fail(sentence("written to", error))
 
     def _watch(self, took: float, dt: float) -> None:
         """Latch a fault if decisions recently took more than a period `dt` [s] SLOW_MOST times, or HUNG_S once."""
@@ -196,8 +200,14 @@ class Loop:
         refusal = self.pilot.ask(request, now)
         if refusal:
             return Refused(refusal)
-        if isinstance(request, RestartRequest):
-            self._robot.restart(now)
+        calls = {RestartRequest: ("put back", self._robot.restart), ArmRequest: ("armed", self._robot.arm)}
+        if type(request) in calls:
+            did, call = calls[type(request)]
+            try:
+                call(now)
+            except Exception as error:  # a driver may raise anything
+                self.pilot.fail(why := sentence(did, error))
+                return Refused(f"Fault: {why}")
         return Accepted()
 
     def _begin(self, request: ConfigureRequest, answer: Callable[[Answer], None]) -> None:

@@ -9,32 +9,24 @@ import signal
 import sys
 from types import FrameType
 
-from overreach.clock import MonotonicClock
+from overreach.clock import Clock, MonotonicClock
 from overreach.errors import SetupError
+from overreach.host.hosted import Hosted
 from overreach.link.endpoint import check_endpoint
 from overreach.link.messages import Choice, check_name
 from overreach.link.robot_end import RobotEnd
+from overreach.priority import LOOP, real_time
 from overreach.robot_side.loop import EXACT, Loop
-from overreach.robots.load import load_robot
+from overreach.robots.base import Robot
+from overreach.robots.load import check_robot_name, load_robot
 
 RATES = (50.0, 1000.0)
 """Valid loop rates [Hz]."""
-FIFO_PRIORITY = 20
-"""Above ordinary threads, below the kernel's own."""
 PARENT_LOOK_S = 0.1
 SPIN_S = 0.0004
 """The loop wakes this long [s] before its time and polls the clock until then: 8 % of a core at 200 Hz ..."""
 SPIN_PART = 0.1
 """... and never more than this part of a period."""
-
-
-def real_time() -> bool:
-    """Ask for SCHED_FIFO for this thread; say whether it was permitted. Linux only."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
-    except (AttributeError, OSError):
-        return False
-    return True
 
 
 def check_rate(rate: float) -> None:
@@ -44,12 +36,19 @@ def check_rate(rate: float) -> None:
 
 
 def run_robot(
-    robot: str, listen: str, rate: float, parent: int | None = None, name: str = "", law: Choice = EXACT
+    robot: str,
+    listen: str,
+    rate: float,
+    parent: int | None = None,
+    name: str = "",
+    law: Choice = EXACT,
+    hosted: bool = True,
 ) -> None:
     """Run the robot side until SIGINT, SIGTERM or SIGHUP or, with `parent`, until that process has ended.
 
-    Each of these ramps the robot to zero. name: its name in the network, by default the robot's own. Raises SetupError
-    or LinkError before anything moves.
+    Each of these ramps the robot to zero. name: its name in the network, by default the robot's own; hosted: whether
+    the robot runs in a process of its own, which ramps by itself when this one is held up, hangs or dies. Raises
+    SetupError or LinkError before anything moves.
     """
     check_rate(rate)
     endpoint = check_endpoint(listen)
@@ -65,15 +64,19 @@ def run_robot(
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if each is not signal.SIGHUP or signal.getsignal(each) is not signal.SIG_IGN:  # as `nohup` leaves it
             signal.signal(each, end)
-    device = load_robot(robot, clock.now())
-    try:
+    check_robot_name(robot)
+    with contextlib.ExitStack() as left:
+        device: Robot
+        if hosted:
+            device = Hosted(robot, 1.0 / rate, clock, lambda: ended)
+            left.callback(device.close)
+        else:
+            device = load_robot(robot, clock.now())
+            left.callback(_stop, device, clock)  # whatever comes in between, also before the first tick
         link = RobotEnd(endpoint, name or check_name(device.model.name))
-    except BaseException:
-        device.stop(clock.now())
-        raise
-    try:
+        left.callback(link.close)
         loop = Loop(device, link, clock, rate, law)
-        fifo = real_time()
+        fifo = real_time(LOOP)
         if parent is None:
             note = "" if fifo else " (no real-time priority: see `overreach doctor`)"
             print(f"overreach robot: {link.name} listens at {endpoint}, {rate:g} Hz{note}", file=sys.stderr)
@@ -89,7 +92,8 @@ def run_robot(
         gc.collect()
         gc.freeze()
         loop.run(running)
-    finally:
-        with contextlib.suppress(Exception):  # whatever came in between, also before the first tick
-            device.stop(clock.now())
-        link.close()
+
+
+def _stop(device: Robot, clock: Clock) -> None:
+    with contextlib.suppress(Exception):
+        device.stop(clock.now())

@@ -23,22 +23,34 @@ class Reporter:
 
     def __init__(self) -> None:
         self.late = Lateness()
-        self._told = (0.0, 0.0, 0.0)
+        self._apart = Lateness()
+        self._wrote_at = inf
+        self._told = (0.0, 0.0, 0.0, 0.0, 0.0)
         self._told_at = -inf
+
+    def wrote(self, now: float, dt: float) -> None:
+        """Count a write at `now` [s]; `dt` [s] after the last one, it is in time."""
+        if self._wrote_at < inf:
+            self._apart.add(max(0.0, now - self._wrote_at - dt))
+        self._wrote_at = now
 
     def state(
         self, tick: Tick, pilot: Pilot, number: int, overruns: int, malformed: int, revision: int, frame: Frame
     ) -> State:
         """Return the tick as a state. frame: the pages'."""
         if tick.now - self._told_at >= LATE_EVERY_S:
-            self._told = (self.late.percentile(0.5), self.late.percentile(0.99), self.late.most * 1e6)
+            late, apart = self.late, self._apart
+            self._told = (
+                late.percentile(0.5), late.percentile(0.99), late.most * 1e6, apart.percentile(0.99), apart.most * 1e6
+            )  # fmt: skip
             self._told_at = tick.now
-            self.late.reset()
+            late.reset()
+            apart.reset()
         verdict, split, polar, state = tick.verdict, tick.split, tick.polar, tick.decided.state
         model = pilot.model
         chain = pilot.controller.chain
         bearing, heading = polar.psi + model.mount.yaw, state.pose.yaw
-        p50, p99, most = self._told
+        p50, p99, most, apart_p99, apart_max = self._told
         return State(
             t=tick.now,
             tick=number,
@@ -72,6 +84,8 @@ class Reporter:
             late_p50=p50,
             late_p99=p99,
             late_max=most,
+            apart_p99=apart_p99,
+            apart_max=apart_max,
             overruns=overruns,
             refused=pilot.gate.refused + malformed,
             revision=revision,

@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from overreach.errors import told
 from overreach.model.model import Model
 from overreach.types import BaseTwist, RobotState
+
+
+class RobotFault(Exception):  # noqa: N818  # a fault is what it is: the loop goes on
+    """What is wrong with a robot, in a sentence for the operator."""
+
+
+def sentence(did: str, error: BaseException) -> str:
+    """Return, as a sentence, that a robot could not be `did` (read, written to, armed), and why."""
+    return str(error) if isinstance(error, RobotFault) else f"The robot could not be {did}: {told(error)}."
 
 
 class Robot(Protocol):
@@ -33,6 +43,10 @@ class Robot(Protocol):
         They hold until the next call, which comes by `deadline` [s] if all is well; past it, a robot that can come to
         rest by itself does so. May raise: that is a fault.
         """
+        ...
+
+    def arm(self, now: float) -> None:
+        """Get ready to move: an operator has armed. Called before anything moves. May raise: that is a fault."""
         ...
 
     def stop(self, now: float) -> None:

@@ -69,6 +69,9 @@ class KinematicRobot:
         if gripper is not None:
             self._gripper = max(0.0, min(1.0, gripper))
 
+    def arm(self, now: float) -> None:
+        """Need nothing to get ready."""
+
     def stop(self, now: float) -> None:
         """Ask for standstill."""
         self.write(BaseTwist(), (0.0,) * len(self._joints), None, now, now)

@@ -10,6 +10,7 @@ from overreach.model.model import channels
 from overreach.robots.base import Robot
 from overreach.types import FLOATS, BaseTwist, RobotState
 
+PARTS = ("model", "simulated", "read", "write", "arm", "stop", "restart")
 PERIOD = 0.01
 """Robots are read and written with this period [s]."""
 PART = 0.1
@@ -37,11 +38,12 @@ def check_robot(
     """
     clock = clock or SteppedClock(1000.0)
     robot = make(clock.now())
-    missing = [name for name in ("model", "simulated", "read", "write", "stop", "restart") if not hasattr(robot, name)]
+    missing = [name for name in PARTS if not hasattr(robot, name)]
     assert not missing, f"robot lacks {', '.join(missing)}"
     each = channels(robot.model)
     assert len({channel.name for channel in each}) == len(each), "two channels have one name"
     first = _read(robot, clock, None)
+    robot.arm(clock.now())
     assert max(map(abs, _rates(first)), default=0.0) <= STILL, f"moves before it is asked to: {first}"
     last = first
     for k, channel in enumerate(each):
