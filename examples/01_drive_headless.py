@@ -10,7 +10,7 @@ pilot.ask(ov.ArmRequest(operator=1), now=0.0)
 dt = 1 / 200
 for k in range(2000):
     now = k * dt
-    command = ov.Command(operator=1, seq=k + 1, grip=1, held=True, twist=ov.Twist(v_x=0.4), frame=ov.Frame.HAND)
+    command = ov.Command(1, seq=k + 1, grip=1, held=True, twist=ov.Twist(v_x=0.4), frame=ov.Frame.HAND, seen=now)
     tick = pilot.tick(robot.read(now), command, now, dt)
     robot.write(tick.base, tick.joints, tick.gripper, now, now + 2 * dt)
 state = robot.read(2000 * dt)

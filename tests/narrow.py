@@ -1,9 +1,10 @@
-"""A thin link: a TCP relay that passes on only so many bytes a second each way, and loses nothing."""
+"""A thin or long link: a TCP relay that passes on so many bytes a second each way, so much later, and loses nothing."""
 
 from __future__ import annotations
 
 import contextlib
 import math
+import queue
 import socket
 import threading
 import time
@@ -13,6 +14,8 @@ from contextlib import contextmanager
 CHUNK = 512
 LOOK_S = 0.01
 BUFFER = 65536
+UNDER_WAY = 256
+"""Chunks that a long link holds."""
 
 
 class Way:
@@ -20,6 +23,8 @@ class Way:
 
     def __init__(self) -> None:
         self.rate = math.inf
+        self.delay = 0.0
+        self.cut = False
         self.passed = 0
         self._lock = threading.Lock()
 
@@ -64,13 +69,28 @@ class Narrow:
 
     @staticmethod
     def _pump(source: socket.socket, sink: socket.socket, way: Way) -> None:
+        # What is under way on a long link does not hold back its sender; a thin one does.
+        coming: queue.Queue[tuple[float, bytes]] = queue.Queue(UNDER_WAY)
+
+        def deliver() -> None:
+            with contextlib.suppress(OSError):
+                while True:
+                    due, data = coming.get()
+                    while way.cut or time.monotonic() < due:
+                        time.sleep(LOOK_S if way.cut else max(0.0, due - time.monotonic()))
+                    if not data:
+                        break
+                    sink.sendall(data)
+            for one in (source, sink):
+                with contextlib.suppress(OSError):
+                    one.shutdown(socket.SHUT_RDWR)
+
+        threading.Thread(target=deliver, daemon=True).start()
         with contextlib.suppress(OSError):
             while data := source.recv(CHUNK):
                 way.pass_on(len(data))
-                sink.sendall(data)
-        for one in (source, sink):
-            with contextlib.suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
+                coming.put((time.monotonic() + way.delay, data))
+        coming.put((0.0, b""))
 
     def close(self) -> None:
         for one in [self._listener, *self._open]:

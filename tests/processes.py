@@ -137,7 +137,7 @@ class Driver:
 
     def send(self, v_c: float = 0.4, w_c: float = 0.0, held: bool = True) -> None:
         self.seq += 1
-        self.link.send(said(self.operator, self.seq, self.grip, held, v_c, w_c))
+        self.link.send(said(self.operator, self.seq, self.grip, held, v_c, w_c, seen=self.link.t))
 
     def drive(self, seconds: float, v_c: float = 0.4, w_c: float = 0.0) -> None:
         end = time.monotonic() + seconds

@@ -16,8 +16,8 @@ def push(v_c: float, w_c: float = 0.0, frame: Frame = Frame.HAND) -> Twist:
 def said(
     operator: int, seq: int, grip: int, held: bool, v_c: float, w_c: float, frame: Frame = Frame.HAND, **more: Any
 ) -> Command:
-    """Return one message."""
-    return Command(operator, seq, grip, held, push(v_c, w_c, frame), frame, **more)
+    """Return one message; it echoes the beginning of time unless `seen` says otherwise."""
+    return Command(operator, seq, grip, held, push(v_c, w_c, frame), frame, **{"seen": 0.0} | more)
 
 
 def drives(v_b: float = 0.0, w_b: float = 0.0) -> BaseTwist:

@@ -60,7 +60,7 @@ class Side:
     def tick(self) -> Decision:
         self.seq += 1
         state = self.altered(self.robot.read(self.now))
-        command = said(ME, self.seq, self.grip, self.held, *self.stick)
+        command = said(ME, self.seq, self.grip, self.held, *self.stick, seen=self.now)
         tick = self.pilot.tick(state, command, self.now, self.dt)
         self.robot.write(tick.base, tick.joints, None, self.now, self.now + self.dt)
         if tick.decided.fault and self.faulted_at is None:

@@ -97,6 +97,8 @@ def test_simulate_prints_a_table() -> None:
         (["robot", "--listen", "nonsense"], "HOST:PORT"),
         (["robot", "--rate", "5"], "50 to 1000 Hz"),
         (["drive", "--rate", "nan"], "50 to 1000 Hz"),
+        (["drive", "--max-delay", "inf"], "0.1 to 2 s"),
+        (["robot", "--max-delay", "0"], "0.1 to 2 s"),
         (["drive", "--host", ""], "--host must be"),
         (["drive", "plannar"], "Did you mean 'planar'"),
         (["drive", "--port", "99999"], "1 to 65535"),

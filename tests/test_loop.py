@@ -120,7 +120,7 @@ class Bench:
 
     def push(self) -> None:
         self.seq += 1
-        self.loop.pilot.gate.accept(said(7, self.seq, 1, True, 0.4, 0.0), self.clock.now())
+        self.loop.pilot.gate.accept(said(7, self.seq, 1, True, 0.4, 0.0, seen=self.clock.now()), self.clock.now())
 
     def drive(self, ticks: int, at: Callable[[int], object] = lambda k: None) -> None:
         """Run for `ticks`, with the act `at` before each."""
@@ -248,7 +248,7 @@ def test_verdicts_are_told_by_their_weight(bench: Bench, monkeypatch: pytest.Mon
 
     def too_fast(k: int) -> None:
         bench.seq += 1
-        bench.loop.pilot.gate.accept(said(7, bench.seq, 1, True, 0.8, 0.0), bench.clock.now())
+        bench.loop.pilot.gate.accept(said(7, bench.seq, 1, True, 0.8, 0.0, seen=bench.clock.now()), bench.clock.now())
         if k == 150:
             bench.loop.pilot.gate.latch.stop()
 
@@ -323,9 +323,13 @@ def test_settings_are_used_all_or_none(bench: Bench, monkeypatch: pytest.MonkeyP
 
 
 def test_settings_are_made_beside_the_loop(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    """While settings are made ready the loop goes on with those in force; further ones meanwhile are refused."""
+    """While settings are made ready the loop goes on with those in force; others meanwhile are refused.
+
+    Who asks for the same once more has the answer, instead of who asked before.
+    """
     loop = bench.loop
     answers: list[Answer] = []
+    earlier: list[Answer] = []
     begun: list[Settings] = []
     going: Future[Built] = Future()
 
@@ -335,15 +339,16 @@ def test_settings_are_made_beside_the_loop(bench: Bench, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(loop._builder, "begin", begin)
     wanted = msgspec.structs.replace(loop.settings, workspace=Workspace(0.5, 0.8, -0.5, 0.5), speed_scale=0.3)
-    loop._begin(ConfigureRequest(wanted), answers.append)
+    loop._begin(ConfigureRequest(wanted), earlier.append)
     with pytest.raises(SetupError, match="being made ready"):
-        loop._begin(ConfigureRequest(wanted), answers.append)
+        loop._begin(ConfigureRequest(msgspec.structs.replace(wanted, speed_scale=0.4)), answers.append)
+    loop._begin(ConfigureRequest(wanted), answers.append)
     bench.drive(20)
     assert (begun, answers) == ([wanted], [])
     assert loop.pilot.gate.speed_scale == 1.0
     going.set_result(build(wanted, loop._model))
     loop.tick(bench.clock.now(), PERIOD)
-    assert answers == [Accepted()]
+    assert (answers, earlier) == ([Accepted()], [])
     assert (loop.pilot.gate.speed_scale, loop.pilot.model.workspace) == (0.3, wanted.workspace)
 
 
@@ -409,7 +414,7 @@ def test_while_libraries_load_nobody_drives(bench: Bench, monkeypatch: pytest.Mo
     for k in range(300):
         if k == 100:
             going.set_result(build(loop.settings, loop._model))
-        mine = said(7, k + 1, 1 if k < 200 else 2, True, 0.4, 0.0)
+        mine = said(7, k + 1, 1 if k < 200 else 2, True, 0.4, 0.0, seen=bench.clock.now())
         commands.append(said(8, 1, 1000, True, 0.4, 0.0) if k == 50 else mine)
         loop.tick(bench.clock.now(), PERIOD)
         bench.clock.t += PERIOD
@@ -492,7 +497,7 @@ def test_an_arm_in_space_is_driven_by_the_loop() -> None:
         link.publish = lambda state: states.append(decode_state(state))  # type: ignore[method-assign]
         loop.pilot.gate.arm(7, 0, clock.now())
         for k in range(300):
-            loop.pilot.gate.accept(said(7, k + 1, 1, True, 0.3, 0.0), clock.now())
+            loop.pilot.gate.accept(said(7, k + 1, 1, True, 0.3, 0.0, seen=clock.now()), clock.now())
             loop.tick(clock.now(), PERIOD)
             clock.t += PERIOD
         assert loop.pilot.gate.latch.fault == ""

@@ -46,7 +46,7 @@ ARROWS: dict[str, set[str]] = {
         "errors", "requests", "clock", "priority", "types", "parameters", "gate", "arm", "model", "law", "plugs",
         "control", "robots", "host", "link",
     },
-    "cockpit": {"errors", "clock", "requests", "types", "parameters", "plugs", "robots", "link", "robot_side"},
+    "cockpit": {"errors", "clock", "requests", "types", "parameters", "gate", "plugs", "robots", "link", "robot_side"},
     "run": {
         "errors", "verdicts", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law", "plugs",
         "control", "robots",
@@ -228,10 +228,10 @@ def test_nothing_that_moves_a_robot_can_switch_the_bounds_off() -> None:
     assert given == {
         "controller": {"model", "law", "ramp_s"},
         "decide": {"state", "twist", "dt", "now", "motion", "frame"},
-        "pilot": {"model", "law", "limits"},
+        "pilot": {"model", "law", "limits", "max_delay"},
         "tick": {"state", "command", "now", "dt"},
-        "loop": {"robot", "link", "clock", "rate", "law"},
-        "run": {"robot", "listen", "rate", "parent", "name", "law", "hosted"},
+        "loop": {"robot", "link", "clock", "rate", "law", "max_delay"},
+        "run": {"robot", "listen", "rate", "parent", "name", "law", "hosted", "max_delay"},
         "guard": {"channels", "ramp_s"},
         "write": {"wanted", "motion", "dt"},
     }

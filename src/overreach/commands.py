@@ -26,6 +26,7 @@ def drive(
     law: str = "exact",
     set: tuple[str, ...] = (),
     hosted: bool = True,
+    max_delay: float = 0.4,
 ) -> None:
     """Start a simulated robot and the page to drive it with; open a browser where there is one.
 
@@ -39,10 +40,11 @@ def drive(
         law: Name of the law it starts with (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         hosted: Whether the robot runs in a process of its own, which brings it to rest if the loop hangs or dies.
+        max_delay: Commands older than this [s] are not obeyed, 0.1 to 2.
     """
     from overreach.cockpit.drive import run_drive
 
-    run_drive(robot, host, port, rate, browser, law, set, allow_host, hosted)
+    run_drive(robot, host, port, rate, browser, law, set, allow_host, hosted, max_delay)
 
 
 @app.command
@@ -54,6 +56,7 @@ def robot(
     law: str = "exact",
     set: tuple[str, ...] = (),
     hosted: bool = True,
+    max_delay: float = 0.4,
     parent: int | None = None,
 ) -> None:
     """Run the robot side: loop, gate, law and robot. A cockpit connects to it.
@@ -66,13 +69,14 @@ def robot(
         law: Name of the law it starts with (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         hosted: Whether the robot runs in a process of its own, which brings it to rest if the loop hangs or dies.
+        max_delay: Commands older than this [s] are not obeyed, 0.1 to 2.
         parent: End when this process, which started this one, ends.
     """
     from overreach.link.messages import Choice
     from overreach.parameters import assignments
     from overreach.robot_side.process import run_robot
 
-    run_robot(robot, listen, rate, parent, name, Choice(law, dict(assignments(set))), hosted)
+    run_robot(robot, listen, rate, parent, name, Choice(law, dict(assignments(set))), hosted, max_delay)
 
 
 @app.command

@@ -13,7 +13,7 @@ HOST = 21
 def real_time(priority: int) -> bool:
     """Ask for SCHED_FIFO for this thread; say whether it was permitted. Linux only."""
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
     except (AttributeError, OSError):
         return False
     return True

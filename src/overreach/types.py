@@ -17,8 +17,8 @@ from overreach.verdicts import Verdict
 FLOATS = {float}
 
 
-class Record(msgspec.Struct, frozen=True, gc=False):
-    """Base of the frozen, slotted records (a compiled struct: 0.1 us to make)."""
+class Record(msgspec.Struct, frozen=True, gc=False, forbid_unknown_fields=True):
+    """Base of the frozen, slotted records (a compiled struct: 0.1 us to make). On a wire, no other field is taken."""
 
 
 class Frame(enum.StrEnum):
@@ -50,7 +50,7 @@ class Channel(Record, frozen=True):
     dead_band: float = 0.0
 
 
-class Twist(Record, frozen=True, forbid_unknown_fields=True):
+class Twist(Record, frozen=True):
     """A rigid body's velocity: v_x, v_y, v_z [m/s], w_x, w_y, w_z [rad/s]; units never depend on the frame."""
 
     v_x: float = 0.0
@@ -69,12 +69,13 @@ class BaseTwist(Record, frozen=True):
     w_z: float = 0.0
 
 
-class Command(Record, frozen=True, forbid_unknown_fields=True):
+class Command(Record, frozen=True):
     """One message from the operator: the whole state of stick and dead-man. Its meaning travels with the numbers.
 
     operator: session nonce; seq: counts up within it; grip: number of this press of the dead-man; held: whether it is
     held; twist: the hand's velocity, in `frame` (see `overreach.law.frame`); gripper: its wanted opening, 0 to 1, None
-    to leave it as it is; seen: time `t` [s] of the newest state that the operator saw, 0 if none.
+    to leave it as it is; seen: time `t` [s] of the newest state that the operator's side had heard of
+    when sending it, None if of none: it says how old the command is, on the robot's own clock.
     """
 
     operator: int
@@ -84,7 +85,7 @@ class Command(Record, frozen=True, forbid_unknown_fields=True):
     twist: Twist = Twist()
     frame: Frame = Frame.HAND
     gripper: float | None = None
-    seen: float = 0.0
+    seen: float | None = None
 
 
 class Pose(Record, frozen=True):

@@ -47,6 +47,7 @@ class Verdict(enum.StrEnum):
         "The robot side was held up, so the robot came to rest by itself. Press Arm, then hold the pad.", "warn",
     )  # fmt: skip
     DISARMED = "disarmed", "Disarmed", "Press Arm, then hold the pad.", "down"
+    DELAYED = "delayed", "Link slow", "Commands take too long to come: none is obeyed.", "warn"
     LOST = "lost", "Link lost", "No command for 1 s. Let go and press again.", "warn"
     REGRIP = "regrip", "Let go", "The robot came to rest without commands. Let go and press again.", "warn"
     STALE = "stale", "Link slow", "No command for 200 ms: slowing down.", "warn"

@@ -96,7 +96,7 @@ def test_all_six_components_are_obeyed(arm: Callable[..., SerialArm]) -> None:
         now = k * dt
         c, s = math.cos(now), math.sin(now)
         twist = Twist(0.2, 0.05, 0.03 * c, 0.1 * s, 0.1 * c, 0.05 * s)
-        tick = pilot.tick(robot.read(now), Command(1, k + 1, 1, True, twist, Frame.WORLD, 0.7), now, dt)
+        tick = pilot.tick(robot.read(now), Command(1, k + 1, 1, True, twist, Frame.WORLD, 0.7, now), now, dt)
         robot.write(tick.base, tick.joints, tick.gripper, now, now + dt)
         assert tick.verdict in (Verdict.MOVING, Verdict.ACCELERATION), (now, tick.sentence)
         u = np.array(msgspec.structs.astuple(tick.decided.u))

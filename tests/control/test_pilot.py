@@ -96,7 +96,10 @@ def stream(seed: int) -> tuple[list[Tick], WholeBody]:
             seq += 1
             odd = chance.random() < 0.02
             sent = Twist(chance.choice([math.nan, math.inf, 1.0]), v_z=chance.choice([0.0, 0.1])) if odd else twist
-            command = msgspec.structs.replace(said(ME, seq, grip, chance.random() < 0.97, 0.0, 0.0, frame), twist=sent)
+            command = msgspec.structs.replace(
+                said(ME, seq, grip, chance.random() < 0.97, 0.0, 0.0, frame, seen=now - chance.uniform(0.0, 0.41)),
+                twist=sent,
+            )
         state: RobotState | None = robot.read(now)
         if chance.random() < 0.005:
             state = None
@@ -123,7 +126,7 @@ def test_a_pilot_raises_nothing_and_keeps_what_it_was_told() -> None:
     """Each tick holds its inputs as they were given: state, command, requests, now and dt."""
     pilot, robot = Pilot(planar()), KinematicRobot()
     assert pilot.ask(ArmRequest(ME), 1.0) == ""
-    command = said(ME, 1, 1, True, 0.2, 0.1)
+    command = said(ME, 1, 1, True, 0.2, 0.1, seen=0.9)
     state = robot.read(1.0)
     tick = pilot.tick(state, command, 1.0, DT)
     assert (tick.state, tick.command, tick.requests, tick.now, tick.dt) == (state, command, (ArmRequest(ME),), 1.0, DT)
@@ -135,7 +138,7 @@ def driven(frame: Frame = Frame.HAND, v_c: float = 0.3) -> tuple[Pilot, Kinemati
     pilot, robot, now = Pilot(planar(), Exact()), KinematicRobot(now=10.0), 10.0
     pilot.ask(ArmRequest(ME), now)
     for k in range(100):
-        tick = pilot.tick(robot.read(now), said(ME, k + 1, 1, True, v_c, 0.0, frame), now, DT)
+        tick = pilot.tick(robot.read(now), said(ME, k + 1, 1, True, v_c, 0.0, frame, seen=now), now, DT)
         robot.write(tick.base, tick.joints, None, now, now + DT)
         now += DT
     assert tick.verdict is Verdict.MOVING
@@ -148,7 +151,7 @@ def test_what_a_stick_means_does_not_change_in_motion() -> None:
     told = set()
     for k in range(200):
         grip = 1 if k < 150 else 2
-        tick = pilot.tick(robot.read(now), said(ME, 101 + k, grip, True, 0.0, 0.3, Frame.WORLD), now, DT)
+        tick = pilot.tick(robot.read(now), said(ME, 101 + k, grip, True, 0.0, 0.3, Frame.WORLD, seen=now), now, DT)
         robot.write(tick.base, tick.joints, None, now, now + DT)
         now += DT
         if k < 150:
@@ -168,7 +171,7 @@ def test_a_motion_that_the_robot_lacks_is_refused_with_the_reason(part: str) -> 
     command = msgspec.structs.replace(said(ME, 200, 1, True, 0.3, 0.0), twist=Twist(v_x=0.3, **{part: 0.05}))
     refused = pilot.gate.refused
     for k in range(60):
-        sent = msgspec.structs.replace(command, seq=200 + k)
+        sent = msgspec.structs.replace(command, seq=200 + k, seen=now)
         tick = pilot.tick(robot.read(now), sent, now, DT)
         robot.write(tick.base, tick.joints, None, now, now + DT)
         now += DT
@@ -181,7 +184,7 @@ def test_a_motion_that_the_robot_lacks_is_refused_with_the_reason(part: str) -> 
 def test_a_gripper_that_is_not_there_is_refused() -> None:
     """A wish for the gripper of a robot without one is refused with the reason."""
     pilot, robot, now = driven()
-    tick = pilot.tick(robot.read(now), said(ME, 200, 1, True, 0.3, 0.0, gripper=0.5), now, DT)
+    tick = pilot.tick(robot.read(now), said(ME, 200, 1, True, 0.3, 0.0, gripper=0.5, seen=now), now, DT)
     assert tick.sentence.startswith("It has no gripper.")
     assert tick.gripper is None
 
@@ -236,13 +239,14 @@ def test_a_gripper_opens_from_0_to_1() -> None:
     """Where there is a gripper, what it is told lies in 0 to 1, and in a FAULT it is told nothing."""
     pilot, robot = Pilot(SerialRobot(six())), KinematicRobot(SerialRobot(six()))
     pilot.ask(ArmRequest(ME), 0.0)
-    tick = pilot.tick(robot.read(0.0), said(ME, 1, 1, True, 0.0, 0.0, gripper=0.4), 0.0, DT)
+    tick = pilot.tick(robot.read(0.0), said(ME, 1, 1, True, 0.0, 0.0, gripper=0.4, seen=0.0), 0.0, DT)
     assert tick.gripper == 0.4
-    tick = pilot.tick(robot.read(DT), said(ME, 2, 1, True, 0.0, 0.0, gripper=1e9), DT, DT)
+    tick = pilot.tick(robot.read(DT), said(ME, 2, 1, True, 0.0, 0.0, gripper=1e9, seen=DT), DT, DT)
     assert (tick.gripper, tick.verdict) == (None, Verdict.NO_SUCH_MOTION)
-    pilot.tick(robot.read(2 * DT), said(ME, 3, 1, True, 0.0, 0.0, gripper=0.4), 2 * DT, DT)
+    pilot.tick(robot.read(2 * DT), said(ME, 3, 1, True, 0.0, 0.0, gripper=0.4, seen=2 * DT), 2 * DT, DT)
     pilot.fail("why")
-    assert pilot.tick(robot.read(3 * DT), said(ME, 4, 1, True, 0.0, 0.0, gripper=0.4), 3 * DT, DT).gripper is None
+    tick = pilot.tick(robot.read(3 * DT), said(ME, 4, 1, True, 0.0, 0.0, gripper=0.4, seen=3 * DT), 3 * DT, DT)
+    assert tick.gripper is None
 
 
 def test_a_law_is_changed_for_the_same_robot() -> None:

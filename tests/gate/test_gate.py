@@ -40,7 +40,7 @@ class Bench:
 
     def stick(self, held: bool = True, v_c: float = 0.4, w_c: float = 0.0) -> Command:
         self.seq += 1
-        return said(self.operator, self.seq, self.grip, held, v_c, w_c)
+        return said(self.operator, self.seq, self.grip, held, v_c, w_c, seen=self.now)
 
     def arm(self, grip: int | None = None) -> Verdict | None:
         return self.gate.arm(self.operator, self.grip if grip is None else grip, self.now)
@@ -125,7 +125,7 @@ def test_silence_zeroes_both_parts() -> None:
         for more, told in ((0.0, verdict), (1e-12, Verdict.STALE if age == 0.2 else Verdict.LOST)):
             gate = Gate()
             gate.arm(ME, 0, 0.0)
-            gate.accept(said(ME, 1, 1, True, 0.3, -0.2), 0.0)
+            gate.accept(said(ME, 1, 1, True, 0.3, -0.2, seen=0.0), 0.0)
             for _ in range(100):
                 gate.tick(0.0, DT)
             assert gate.tick(age + more, DT).verdict is (told if told is not Verdict.STALE else Verdict.STALE)
@@ -195,12 +195,12 @@ def test_a_refusal_is_told_for_half_a_second() -> None:
     gate = Gate()
     gate.arm(ME, 0, 0.0)
     assert gate.tick(0.0, DT).verdict is Verdict.RELEASED
-    gate.accept(said(ME, 1, 0, False, math.nan, 0.0), 0.0)
+    gate.accept(said(ME, 1, 0, False, math.nan, 0.0, seen=0.0), 0.0)
     assert gate.refused == 1
     assert gate.tick(0.0, DT).verdict is Verdict.NOT_FINITE
     assert gate.tick(math.nextafter(0.5, 0.0), DT).verdict is Verdict.NOT_FINITE
     assert gate.tick(0.5, DT).verdict is Verdict.RELEASED
-    gate.accept(said(ME, 1, 0, False, math.nan, 0.0), 1.0)
+    gate.accept(said(ME, 1, 0, False, math.nan, 0.0, seen=1.0), 1.0)
     gate.latch.stop()
     assert gate.tick(1.0, DT).verdict is Verdict.STOPPED
 
@@ -209,23 +209,23 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     """Another may arm once the robot rests, in both parts, and the first has been silent for 1 s, to the last bit."""
     gate = Gate()
     gate.arm(ME, 0, 0.0)
-    gate.accept(said(ME, 1, 1, False, 0.0, 0.0), 0.0)
+    gate.accept(said(ME, 1, 1, False, 0.0, 0.0, seen=0.0), 0.0)
     gate.tick(0.0, DT)
     assert gate.arm(OTHER, 0, 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 1.0) is None
     assert gate.seq == 1  # to arm again loses nothing
-    assert gate.accept(said(1, 1, 1, True, 0.0, 0.0), 1.0) is Verdict.OTHER_OPERATOR
+    assert gate.accept(said(1, 1, 1, True, 0.0, 0.0, seen=1.0), 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(OTHER, 0, math.nextafter(1.0, 2.0)) is None
     assert gate.latch.operator == OTHER
     assert gate.seq == 0  # nothing of the first's counts
-    gate.accept(said(OTHER, 1, 1, False, 0.0, 0.0), 2.0)
+    gate.accept(said(OTHER, 1, 1, False, 0.0, 0.0, seen=2.0), 2.0)
     assert gate.seq == 1
     assert gate.arm(ME, 0, 2.5) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 9.0) is None
     assert gate.seq == 0
     turning = Gate()
     turning.arm(ME, 0, 0.0)
-    turning.accept(said(ME, 1, 1, True, 0.0, 0.4), 0.0)
+    turning.accept(said(ME, 1, 1, True, 0.0, 0.4, seen=0.0), 0.0)
     turning.tick(0.0, DT)
     assert turning.arm(OTHER, 0, 9.0) is Verdict.OTHER_OPERATOR
     assert Gate().arm(OTHER, 0, 0.0) is None
@@ -238,11 +238,11 @@ def test_numbers_of_messages_and_presses_begin_at_one() -> None:
     """Message 0 is none, and so is press 0 or any that was spent, whatever number the robot is armed with."""
     gate = Gate()
     gate.arm(ME, -5, 0.0)
-    assert gate.accept(said(ME, 0, 1, True, 0.4, 0.0), 0.0) is Verdict.OUT_OF_ORDER
-    assert gate.accept(said(ME, 1, 0, True, 0.4, 0.0), 0.0) is None
+    assert gate.accept(said(ME, 0, 1, True, 0.4, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(ME, 1, 0, True, 0.4, 0.0, seen=0.0), 0.0) is None
     assert gate.tick(0.0, DT).verdict is Verdict.REGRIP
     gate.latch.spend(3)
-    gate.accept(said(ME, 2, 2, True, 0.4, 0.0), 0.0)
+    gate.accept(said(ME, 2, 2, True, 0.4, 0.0, seen=0.0), 0.0)
     assert gate.tick(0.0, DT).verdict is Verdict.REGRIP
 
 
@@ -251,8 +251,8 @@ def test_a_second_of_silence_to_the_last_bit_is_no_loss() -> None:
     for silence, verdict in ((1.0, Verdict.ACCELERATION), (math.nextafter(1.0, 2.0), Verdict.REGRIP)):
         gate = Gate()
         gate.arm(ME, 0, 0.0)
-        gate.accept(said(ME, 1, 1, True, 0.4, 0.0), 0.0)
-        gate.accept(said(ME, 2, 2, True, 0.4, 0.0), silence)
+        gate.accept(said(ME, 1, 1, True, 0.4, 0.0, seen=0.0), 0.0)
+        gate.accept(said(ME, 2, 2, True, 0.4, 0.0, seen=silence), silence)
         assert gate.tick(silence, DT).verdict is verdict
 
 
@@ -266,15 +266,15 @@ def test_no_more_than_64_operators_are_remembered() -> None:
     """The last 64 operators' messages are remembered, and no more: the 65th before may begin anew."""
     gate = Gate()
     for operator in range(1, 66):
-        gate.accept(said(operator, 5, 1, False, 0.0, 0.0), 0.0)
-    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
-    assert gate.accept(said(1, 5, 1, False, 0.0, 0.0), 0.0) is None
-    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0), 0.0) is None  # the oldest, for the first came back
-    assert gate.accept(said(60, 4, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+        gate.accept(said(operator, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0)
+    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(1, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0) is None
+    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0) is None  # the oldest, for the first came back
+    assert gate.accept(said(60, 4, 1, False, 0.0, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
     for operator in range(200, 263):
-        gate.accept(said(2, operator, 1, False, 0.0, 0.0), 0.0)  # who is heard stays
-        gate.accept(said(operator, 5, 1, False, 0.0, 0.0), 0.0)
-    assert gate.accept(said(2, 262, 1, False, 0.0, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+        gate.accept(said(2, operator, 1, False, 0.0, 0.0, seen=0.0), 0.0)  # who is heard stays
+        gate.accept(said(operator, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0)
+    assert gate.accept(said(2, 262, 1, False, 0.0, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
 
 
 def test_what_a_new_gate_knows() -> None:
@@ -282,9 +282,9 @@ def test_what_a_new_gate_knows() -> None:
     gate = Gate()
     assert (gate.seq, gate.refused, gate.resting, gate.speed_scale) == (0, 0, True, 1.0)
     gate.arm(ME, 0, 0.0)
-    assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0), 0.0) is None
+    assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0, seen=0.0), 0.0) is None
     assert gate.seq == 1
-    assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
     gate.set_speed_scale(1.0)
     assert gate.tick(0.0, DT).twist.v_x == pytest.approx(2.5 * DT)
 
@@ -293,10 +293,10 @@ def test_speed_and_ramp_are_told() -> None:
     """A command past the speed limit says SPEED and its scale, one that ramps ACCELERATION, else MOVING."""
     gate = Gate()
     gate.arm(ME, 0, 0.0)
-    gate.accept(said(ME, 1, 1, True, 0.8, 0.0), 0.0)
+    gate.accept(said(ME, 1, 1, True, 0.8, 0.0, seen=0.0), 0.0)
     gated = gate.tick(0.0, 1.0)
     assert (gated.verdict, gated.scale, gated.twist.v_x) == (Verdict.SPEED, 0.5, 0.4)
-    gate.accept(said(ME, 2, 1, True, -0.4, 0.0), 0.0)
+    gate.accept(said(ME, 2, 1, True, -0.4, 0.0, seen=0.0), 0.0)
     assert gate.tick(0.0, DT).verdict is Verdict.ACCELERATION
     gated = gate.tick(0.0, 1.0)
     assert (gated.verdict, gated.scale, gated.twist.v_x) == (Verdict.MOVING, 1.0, -0.4)
@@ -404,7 +404,7 @@ def test_order(start: float, chance: random.Random) -> None:
         dirty.seq = clean.seq
         clean.tick(stick)
         dirty.gate.accept(stick, dirty.now)
-        old = said(ME, chance.randint(1, stick.seq), stick.grip, True, 0.4, 0.4)
+        old = said(ME, chance.randint(1, stick.seq), stick.grip, True, 0.4, 0.4, seen=stick.seen)
         assert dirty.gate.accept(old, dirty.now) is Verdict.OUT_OF_ORDER
         dirty.tick()
         assert k >= 0
@@ -429,7 +429,7 @@ def test_not_finite_is_refused(start: float, bad: float, second: bool) -> None:
 def test_only_who_armed_drives(start: float) -> None:
     """Another operator's stick is refused, and so is his Arm while the first is driving."""
     bench = moving(start)
-    assert bench.gate.accept(said(OTHER, 1, 1, True, -0.4, 0.0), bench.now) is Verdict.OTHER_OPERATOR
+    assert bench.gate.accept(said(OTHER, 1, 1, True, -0.4, 0.0, seen=bench.now), bench.now) is Verdict.OTHER_OPERATOR
     assert bench.gate.arm(OTHER, 1, bench.now) is Verdict.OTHER_OPERATOR
     bench.drive(0.1)
     assert bench.v_c == 0.4
@@ -459,7 +459,7 @@ def test_taking_over_passes_through_rest_and_a_new_press(start: float) -> None:
     other.silence(LOST_S + 0.5)
     bench.now = other.now
     assert bench.arm(grip=0) is None
-    assert bench.gate.accept(said(ME, 3, bench.grip, True, 0.4, 0.0), bench.now) is Verdict.OUT_OF_ORDER
+    assert bench.gate.accept(said(ME, 3, bench.grip, True, 0.4, 0.0, seen=bench.now), bench.now) is Verdict.OUT_OF_ORDER
     assert bench.drive(0.3) is Verdict.REGRIP
 
 
@@ -573,7 +573,7 @@ def asks(bench: Bench, frame: Frame = Frame.HAND, grip: int | None = None, **par
     bench.seq += 1
     gripper = parts.pop("gripper", None)
     twist, press = Twist(**parts), bench.grip if grip is None else grip
-    return Command(ME, bench.seq, press, True, twist, frame, gripper, seen=parts.get("v_x", 0.0) + 7.0)
+    return Command(ME, bench.seq, press, True, twist, frame, gripper, seen=bench.now - 0.1)
 
 
 def test_a_frame_is_taken_at_rest() -> None:
@@ -652,12 +652,12 @@ def test_a_robot_that_has_more_obeys_more() -> None:
     gate.arm(ME, 0, 50.0)
     twist = Twist(0.1, 0.1, 0.05, 0.1, 0.1, 0.1)
     for seq, opening in enumerate((0.0, 0.3, 1.0, None), start=1):
-        assert gate.accept(Command(ME, seq, 1, True, twist, gripper=opening), 50.0) is None
+        assert gate.accept(Command(ME, seq, 1, True, twist, gripper=opening, seen=50.0), 50.0) is None
         for _ in range(40):
             gated = gate.tick(50.0, DT)
         assert (gated.twist, gated.gripper) == (twist, opening)
     for seq, opening in enumerate((-1e-9, 1.0 + 1e-9), start=10):
-        assert gate.accept(Command(ME, seq, 1, True, twist, gripper=opening), 50.0) is Verdict.NO_SUCH_MOTION
+        assert gate.accept(Command(ME, seq, 1, True, twist, gripper=opening, seen=50.0), 50.0) is Verdict.NO_SUCH_MOTION
         gated = gate.tick(50.0, DT)
         assert (gated.gripper, gated.reason) == (None, "It has no gripper's opening but 0 to 1.")
     gate.accept(Command(ME, 20, 1, False, twist, gripper=0.5), 50.0)
@@ -678,15 +678,15 @@ def test_every_number_of_a_command_is_finite(bad: float) -> None:
 
 
 def test_what_the_operator_saw_is_kept() -> None:
-    """The echo of the last accepted command is kept; before the first it is 0."""
+    """The echo of the last accepted command is kept; before the first there is none."""
     bench = Bench(50.0)
-    assert bench.gate.seen == 0.0
+    assert bench.gate.seen is None
     bench.arm()
     bench.press()
     bench.gate.accept(asks(bench, v_x=0.1), bench.now)
-    assert bench.gate.seen == pytest.approx(7.1)
-    bench.gate.accept(Command(ME, bench.seq, 1, True, seen=99.0), bench.now)  # a repeated one
-    assert bench.gate.seen == pytest.approx(7.1)
+    assert bench.gate.seen == 49.9
+    bench.gate.accept(Command(ME, bench.seq, 1, True, seen=49.95), bench.now)  # a repeated one
+    assert bench.gate.seen == 49.9
 
 
 def test_the_speed_scale_scales_every_part() -> None:
@@ -710,3 +710,145 @@ def test_the_speed_scale_scales_every_part() -> None:
     assert gated.twist.v_x == pytest.approx(0.4)
     assert gated.scale == pytest.approx(0.5)
     assert gated.verdict is Verdict.SPEED
+
+
+def test_a_command_is_as_old_as_the_state_that_it_echoes() -> None:
+    """Up to max_delay, to the last bit, a held command is obeyed; older, of the future, or of none, it is not fresh."""
+    for seen, refusal in (
+        (50.0, None),
+        (49.5, None),
+        (math.nextafter(49.5, 0.0), Verdict.DELAYED),
+        (math.nextafter(50.0, 60.0), Verdict.DELAYED),
+        (None, Verdict.DELAYED),
+        (-1e9, Verdict.DELAYED),
+    ):
+        gate = Gate(max_delay=0.5)
+        gate.arm(ME, 0, 50.0)
+        assert gate.accept(said(ME, 1, 1, True, 0.3, 0.0, seen=seen), 50.0) is refusal
+        assert (gate.tick(50.0, DT).verdict is Verdict.DELAYED) is (refusal is not None)
+        assert gate.resting is (refusal is not None)
+        assert gate.refused == (refusal is not None)
+        assert (gate.heard, gate.seq) == (1, 0 if refusal else 1)
+        assert gate.age == (0.0 if seen is None else 50.0 - seen)
+        # For rest, no command is too old.
+        assert gate.accept(said(ME, 2, 1, False, 0.0, 0.0, seen=seen), 50.0) is None
+
+
+def test_the_usual_bound_is_0_4_s() -> None:
+    """Without another bound a command may be 0.4 s old."""
+    for age, refusal in ((0.4, None), (0.41, Verdict.DELAYED)):
+        gate = Gate()
+        gate.arm(ME, 0, 0.0)
+        assert gate.accept(said(ME, 1, 1, True, 0.3, 0.0, seen=0.0), age) is refusal
+
+
+@given(starts, st.floats(0.41, 30.0))
+def test_a_constant_delay_moves_nothing(start: float, delay: float) -> None:
+    """However regularly commands come: if each is older than allowed, nothing ever moves, and why is told."""
+    bench = Bench(start)
+    bench.arm()
+    bench.press()
+    for k in range(300):
+        old = msgspec.structs.replace(bench.stick(), seen=bench.now - delay)
+        assert bench.tick(old if k % 3 == 0 else None) is Verdict.DELAYED
+    assert not any(v_c or w_c for v_c, w_c in bench.out)
+    assert bench.gate.tick(bench.now, DT).reason == f"A command was {delay:.2g} s old, 0.4 s are allowed."
+
+
+@given(starts, st.floats(1.2, 4.0))
+def test_a_growing_delay_comes_to_rest(start: float, slower: float) -> None:
+    """On a path that takes `slower` times as long as the stream: rest at most 0.45 s + the bound after letting go."""
+    bench = moving(start)
+    begun = bench.now
+    let_go = begun + 2.0
+    sent = [(begun + k * 0.016, k) for k in range(600)]
+    for at, _ in sent:
+        while bench.now < begun + (at - begun) * slower:
+            bench.tick()
+        held = at < let_go
+        bench.tick(msgspec.structs.replace(bench.stick(held=held), seen=at))
+        if bench.now > let_go + 5.0:
+            break
+    moved = [start + k * DT for k, (v_c, w_c) in enumerate(bench.out) if v_c or w_c]
+    assert moved[-1] < let_go + 0.45 + 0.4
+
+
+def test_a_delay_that_ends_in_time_goes_on_and_one_that_does_not_needs_a_press() -> None:
+    """Delayed for 0.3 s: it slows down and goes on by itself; until it rests, or for more than 1 s: let go first."""
+    for seconds, verdict in ((0.3, Verdict.MOVING), (0.9, Verdict.REGRIP), (1.5, Verdict.REGRIP)):
+        bench = moving(77.0)
+        for _ in range(round(seconds / DT)):
+            bench.tick(msgspec.structs.replace(bench.stick(), seen=bench.now - 0.5))
+        assert bench.drive(0.8) is verdict
+        bench.press()
+        assert bench.drive(0.8) is Verdict.MOVING
+
+
+def test_foreign_numbers_push_nobody_out() -> None:
+    """Who has armed is remembered, whatever number of others speak: none of their old messages is accepted again."""
+    bench = moving(200.0)
+    old = [said(ME, k, bench.grip, True, 0.4, 0.4, seen=bench.now) for k in range(1, bench.seq + 1)]
+    for operator in range(100, 300):
+        bench.gate.accept(said(operator, 10**6, 1, True, 0.4, 0.4, seen=bench.now), bench.now)
+    assert all(bench.gate.accept(message, bench.now) is Verdict.OUT_OF_ORDER for message in old)
+    # Nor while another drives, nor when it arms again.
+    bench.gate.latch.disarm()
+    bench.silence(2.0)
+    assert bench.gate.arm(OTHER, 0, bench.now) is None
+    for operator in range(300, 500):
+        bench.gate.accept(said(operator, 10**6, 1, True, 0.4, 0.4, seen=bench.now), bench.now)
+    bench.gate.latch.disarm()
+    assert bench.gate.arm(ME, 0, bench.now) is None
+    assert bench.gate.heard == bench.seq
+    assert all(bench.gate.accept(message, bench.now) is Verdict.OUT_OF_ORDER for message in old)
+
+
+def test_a_stranger_who_arms_is_remembered_as_it_was() -> None:
+    """What an operator said before it armed stays old when it does."""
+    gate = Gate()
+    gate.accept(said(OTHER, 40, 3, True, 0.4, 0.0, seen=9.0), 9.0)
+    gate.arm(OTHER, 0, 9.0)
+    assert gate.heard == 40
+    assert gate.accept(said(OTHER, 40, 4, True, 0.4, 0.0, seen=9.0), 9.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(OTHER, 41, 3, True, 0.4, 0.0, seen=9.0), 9.0) is None
+    assert gate.tick(9.0, DT).verdict is Verdict.REGRIP
+
+
+def test_of_those_who_have_armed_the_last_64_are_remembered() -> None:
+    """The memory of operators is bounded: the one who armed longest ago, and has been silent since, goes first."""
+    gate = Gate()
+    for operator in range(1, 66):
+        gate.latch.disarm()
+        assert gate.arm(operator, 0, 0.0) is None
+        gate.accept(said(operator, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0)
+    gate.latch.disarm()
+    assert gate.accept(said(2, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(65, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0) is Verdict.OUT_OF_ORDER
+    assert gate.accept(said(1, 5, 1, False, 0.0, 0.0, seen=0.0), 0.0) is None
+
+
+def test_a_pause_is_rest_at_once_until_it_is_armed() -> None:
+    """When the robot's host is latched the command is zero at once, and only arming and a new press lead on."""
+    bench = moving(60.0)
+    bench.gate.pause()
+    assert bench.gate.resting
+    gated = bench.gate.tick(bench.now, DT)
+    assert (gated.motion, gated.verdict) == (Motion.NONE, Verdict.PAUSED)
+    assert bench.drive(0.2) is Verdict.PAUSED
+    bench.press()
+    assert bench.drive(0.2) is Verdict.PAUSED
+    assert bench.arm() is None
+    assert bench.drive(0.1) is Verdict.REGRIP
+    bench.press()
+    assert bench.drive(0.6) is Verdict.MOVING
+    bench.gate.pause()
+    bench.gate.latch.stop()
+    assert bench.tick() is Verdict.STOPPED
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, 0.0, -0.4, 0.09, 2.1])
+def test_the_bound_on_the_delay_cannot_be_switched_off(bad: float) -> None:
+    """A bound that no command can keep, or that nobody can drive with, is refused at set-up."""
+    with pytest.raises(SetupError, match=r"--max-delay must be 0\.1 to 2 s"):
+        Gate(max_delay=bad)
+    assert (Gate(max_delay=0.1).max_delay, Gate(max_delay=2.0).max_delay) == (0.1, 2.0)

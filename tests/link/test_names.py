@@ -38,7 +38,8 @@ def test_two_robots_in_one_network_do_not_hear_each_other() -> None:
 
             def drive(name: str, first: int) -> None:
                 for k in range(100):
-                    both.put(key(name, "command"), encode(said(7, first + k, 1, True, 0.3, 0.0)))
+                    seen = {"left": left, "right": right}[name].now.t
+                    both.put(key(name, "command"), encode(said(7, first + k, 1, True, 0.3, 0.0, seen=seen)))
                     time.sleep(0.005)
 
             until(lambda: ask("left", ArmRequest(7)) == [Accepted()], what="the network")

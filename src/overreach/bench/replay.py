@@ -36,7 +36,8 @@ class Replay:
         for k in range(count):
             now = k * DT
             twist = of_two(law.frame, *scenario.command_at(now))
-            self.ticks.append((robot.read(now), Command(1, k + 1, 1, True, twist, law.frame), now, DT))
+            command = Command(1, k + 1, 1, True, twist, law.frame, seen=now)
+            self.ticks.append((robot.read(now), command, now, DT))
             tick = self.tick(*self.ticks[-1])
             robot.write(tick.base, tick.joints, tick.gripper, now, now + DT)
 

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 from overreach.errors import LinkError, SetupError
+from overreach.gate.gate import MAX_DELAY_S, check_delay
 from overreach.link.endpoint import check_endpoint, free_port
 
 USUAL_PORT = 8420
@@ -103,11 +104,12 @@ def run_drive(
     changes: Sequence[str] = (),
     allowed: Sequence[str] = (),
     hosted: bool = True,
+    max_delay: float = MAX_DELAY_S,
 ) -> None:
     """Run both halves until Ctrl-C or SIGTERM, or until one of them ends.
 
     changes: parameters of the law, NAME=VALUE; allowed: further names that the page is served under; hosted: whether
-    the robot runs in a process of its own.
+    the robot runs in a process of its own; max_delay [s]: how old a command may be.
     """
     from overreach.cockpit.origin import check_host_name
     from overreach.parameters import assignments
@@ -117,10 +119,12 @@ def run_drive(
 
     check_robot_name(robot)
     check_rate(rate)
+    check_delay(max_delay)
     load_law(law, assignments(changes))
     hosts = [host, *map(check_host_name, allowed)]
     _exit_on_signals()
     given = ["--law", law, *(["--set", *changes] if changes else []), *([] if hosted else ["--no-hosted"])]
+    given += ["--max-delay", str(max_delay)]
     with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate, given) as (endpoint, process):
         _operate(endpoint, page, hosts, browser, lambda: process.poll() is not None)
         if process.poll() is not None:

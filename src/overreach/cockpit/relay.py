@@ -45,6 +45,8 @@ class Relay:
         self._pictures = 0
         self._newest = 0.0, self._clock.now()
         """The time of the newest state, 0 before the first, and when it came [s]."""
+        self._operator = 0
+        """Who has armed."""
         self._trouble = ""
         """Why there is no robot side to speak to, if it is known."""
         self._changing = asyncio.Lock()
@@ -61,6 +63,7 @@ class Relay:
     def _from_robot(self, state: State) -> None:
         """Take a state, on zenoh's thread."""
         self._newest = state.t, self._clock.now()
+        self._operator = state.operator
         if (self._pages or state.revision != self._revision) and self._loop is not None:
             self._pictures += 1
             message = wire.encode(wire.StateToPage(self._pictures, state))
@@ -173,6 +176,9 @@ class Relay:
             self._command(page, message)
         elif isinstance(message, wire.BeatFromPage):
             page.seq = message.seq
+            if page.operator == self._operator:
+                # So that a release that was lost is told after all, and that its delay is known before it drives.
+                self._link.send(Command(page.operator, page.seq, page.grip, False, seen=message.seen))
         elif isinstance(message, wire.AskFromPage):
             self._spawn(self._answer(page, message))
         if isinstance(message, wire.CommandFromPage | wire.BeatFromPage):

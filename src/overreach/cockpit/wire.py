@@ -29,14 +29,15 @@ class CommandFromPage(msgspec.Struct, frozen=True, tag="command", forbid_unknown
     twist: Twist
     frame: Frame
     gripper: float | None = None
-    seen: float = 0.0
+    seen: float | None = None
     shown: Count = 0
 
 
 class BeatFromPage(msgspec.Struct, frozen=True, tag="beat", forbid_unknown_fields=True):
-    """Nothing to say, but an answer is wanted: the page measures how late the link is."""
+    """Nobody holds on, and an answer is wanted: the page measures how late the link is."""
 
     seq: Count
+    seen: float | None = None
     shown: Count = 0
 
 
@@ -56,7 +57,7 @@ class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=
 FromPage = CommandFromPage | BeatFromPage | ShownFromPage | AskFromPage
 
 
-class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
+class Greeting(msgspec.Struct, frozen=True, tag="welcome", forbid_unknown_fields=True):
     """To a page, first and when the robot side is another: its operator number, the robot, its settings, its look."""
 
     operator: int
@@ -65,7 +66,7 @@ class Greeting(msgspec.Struct, frozen=True, tag="welcome"):
     scene: Scene
 
 
-class HeardToPage(msgspec.Struct, frozen=True, tag="heard"):
+class HeardToPage(msgspec.Struct, frozen=True, tag="heard", forbid_unknown_fields=True):
     """Everything up to number `seq` was heard. Goes ahead of pictures.
 
     t [s]: time of the robot's newest state, 0 before the first; ago [s]: how long ago it came to the cockpit.
@@ -76,14 +77,14 @@ class HeardToPage(msgspec.Struct, frozen=True, tag="heard"):
     ago: float
 
 
-class StateToPage(msgspec.Struct, frozen=True, tag="state"):
+class StateToPage(msgspec.Struct, frozen=True, tag="state", forbid_unknown_fields=True):
     """A picture, by its number n: a state of the robot."""
 
     n: int
     state: State
 
 
-class AnswerToPage(msgspec.Struct, frozen=True, tag="answer"):
+class AnswerToPage(msgspec.Struct, frozen=True, tag="answer", forbid_unknown_fields=True):
     """Whether the request was carried out and, if not, why."""
 
     id: int
@@ -91,7 +92,7 @@ class AnswerToPage(msgspec.Struct, frozen=True, tag="answer"):
     reason: str
 
 
-class SettingsToPage(msgspec.Struct, frozen=True, tag="settings"):
+class SettingsToPage(msgspec.Struct, frozen=True, tag="settings", forbid_unknown_fields=True):
     """The changed settings, and how to draw them."""
 
     settings: Settings

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 
 from overreach.control.controller import HandController
 from overreach.control.tick import Configured, Failed, Tick
-from overreach.gate.gate import PLANE, STILL, Gate, Gated
+from overreach.gate.gate import MAX_DELAY_S, PLANE, STILL, Gate, Gated
 from overreach.gate.limits import Limits
 from overreach.law.body import Planner, WholeBody
 from overreach.law.laws import Exact
@@ -32,11 +32,17 @@ def obeys(model: Model) -> frozenset[str]:
 class Pilot:
     """One operator's command and one robot's state -> what is written, tick by tick. Raises nothing.
 
-    limits: of the command.
+    limits: of the command; max_delay [s]: how old a command may be.
     """
 
-    def __init__(self, model: Model, law: WholeBody | None = None, limits: Limits | None = None) -> None:
-        self.gate = Gate(limits, obeys=obeys(model))
+    def __init__(
+        self,
+        model: Model,
+        law: WholeBody | None = None,
+        limits: Limits | None = None,
+        max_delay: float = MAX_DELAY_S,
+    ) -> None:
+        self.gate = Gate(limits, obeys=obeys(model), max_delay=max_delay)
         self.controller = self._controller(model, law or Exact())
         self._asked: list[Request | Failed | Configured] = []
 

@@ -26,8 +26,12 @@ LOST_S = 1.0
 """Without a fresh command for this long [s], only a new press of the dead-man counts."""
 TOLD_S = 0.5
 """How long a refusal is shown [s], unless a verdict is weightier."""
+MAX_DELAY_S = 0.4
+"""A command that is older than this [s], by the robot's own clock, is not obeyed ..."""
+DELAYS = (0.1, 2.0)
+"""... and this can be set from, and to [s]."""
 OPERATORS_KEPT = 64
-"""How many operators' last messages are remembered."""
+"""How many operators' last messages are remembered: of those who have armed, and as many of others."""
 NEVER = (0, 0)
 """Numbers of the last message and the last press of an operator who has not been heard from yet."""
 
@@ -53,24 +57,44 @@ class Gated(Record, frozen=True):
     reason: str = ""
 
 
+def check_delay(max_delay: float) -> float:
+    """Return `max_delay` [s]; raises SetupError unless commands can keep it and an operator can drive with it."""
+    if not DELAYS[0] <= max_delay <= DELAYS[1]:
+        raise SetupError(f"--max-delay must be {DELAYS[0]:g} to {DELAYS[1]:g} s, got {max_delay:g}")
+    return max_delay
+
+
 @final
 class Gate:
     """Holds the last accepted message and ramps the command. One `tick` per period.
 
     limits: of the command; speed_scale: fraction of `limits.v_c`, `limits.w_c` that full stick asks for; obeys: the
-    parts of a twist, and "gripper", that the robot has; a command for any other is refused, with the reason.
+    parts of a twist, and "gripper", that the robot has; a command for any other is refused, with the reason;
+    max_delay [s]: how old a command may be. Its age is `now` less the time of the state that it echoes.
     """
 
-    def __init__(self, limits: Limits | None = None, speed_scale: float = 1.0, obeys: frozenset[str] = PLANE) -> None:
+    def __init__(
+        self,
+        limits: Limits | None = None,
+        speed_scale: float = 1.0,
+        obeys: frozenset[str] = PLANE,
+        max_delay: float = MAX_DELAY_S,
+    ) -> None:
         self.limits = limits or Limits()
         self._lacks = [name for name in Twist.__struct_fields__ if name not in obeys]
         self._grips = "gripper" in obeys
         self.latch = StopLatch()
         self.speed_scale = speed_scale
+        self.max_delay = check_delay(max_delay)
         self.refused = 0
+        self.heard = 0
+        """Number of the newest message of who has armed, accepted or not ..."""
+        self.age = 0.0
+        """... and how old it was when it came [s], 0 if that is not known."""
         self._said: Command | None = None
         self._fresh_at = -math.inf
-        self._seen: dict[int, tuple[int, int]] = {}
+        self._known: dict[int, tuple[int, int]] = {}
+        self._others: dict[int, tuple[int, int]] = {}
         self._refusal = Verdict.OUT_OF_ORDER
         self._refused_at = -math.inf
         self._reason = ""
@@ -97,26 +121,28 @@ class Gate:
         return self._said.seq if self._said else 0
 
     @property
-    def seen(self) -> float:
-        """The time [s] of the state that the operator saw when sending that message, 0 before the first."""
-        return self._said.seen if self._said else 0.0
+    def seen(self) -> float | None:
+        """The time [s] of the state that the operator's side had heard of when sending that message, if of any."""
+        return self._said.seen if self._said else None
 
     def arm(self, operator: int, grip: int, now: float) -> Verdict | None:
         """Arm for `operator` at `now` [s]; return the verdict that forbids it, or None.
 
-        Presses up to `grip` do not count: a dead-man that is already held moves nothing. The operator
-        who armed before keeps the robot until it rests and they have been silent for LOST_S.
+        Presses up to `grip` do not count: a dead-man that is already held moves nothing. The operator who armed before
+        keeps the robot until it rests and they have disarmed, or been silent for LOST_S.
         """
         latch = self.latch
         if latch.fault:
             return Verdict.FAULT
         if latch.stopped:
             return Verdict.STOPPED
-        if latch.armed and latch.operator != operator and not (self.resting and now - self._fresh_at > LOST_S):
-            return Verdict.OTHER_OPERATOR
         if latch.operator != operator:
+            if not self.resting or (latch.armed and now - self._fresh_at <= LOST_S):
+                return Verdict.OTHER_OPERATOR
             self._said = None
-        _, pressed = self._seen.get(operator, NEVER)
+        last = self._known.pop(operator, None) or self._others.pop(operator, NEVER)
+        _remember(self._known, operator, last)
+        self.heard, pressed = last
         latch.arm(operator, max(grip, pressed))
         return None
 
@@ -131,23 +157,23 @@ class Gate:
         A command for a motion that the robot lacks counts as a command for rest.
         """
         latch = self.latch
-        seq, grip = self._seen.get(said.operator, NEVER)
+        told = self._known if said.operator in self._known else self._others
+        seq, grip = told.get(said.operator, NEVER)
         refusal: Verdict | None = None
-        numbers = [*astuple(said.twist), said.seen]
-        if said.gripper is not None:
-            numbers.append(said.gripper)
+        numbers = [*astuple(said.twist), *[one for one in (said.seen, said.gripper) if one is not None]]
         if not all(map(math.isfinite, numbers)):
             refusal = Verdict.NOT_FINITE
         elif said.seq <= seq:
             refusal = Verdict.OUT_OF_ORDER
         else:
             # Remembered for refused operators too: their old messages and presses stay old when they arm.
-            self._seen.pop(said.operator, None)
-            self._seen[said.operator] = (said.seq, max(grip, said.grip))
-            if len(self._seen) > OPERATORS_KEPT:
-                del self._seen[next(iter(self._seen))]
+            _remember(told, said.operator, (said.seq, max(grip, said.grip)))
+            if said.operator == latch.operator:
+                self.heard, self.age = said.seq, 0.0 if said.seen is None else now - said.seen
             if latch.armed and said.operator != latch.operator:
                 refusal = Verdict.OTHER_OPERATOR
+            elif said.held and (said.seen is None or not 0.0 <= now - said.seen <= self.max_delay):
+                return self._refuse(Verdict.DELAYED, now, self._too_old(said, now))
         if refusal:
             return self._refuse(refusal, now)
         if latch.armed and self._was_lost(now):
@@ -159,6 +185,11 @@ class Gate:
             self._said = _with(said, twist=STILL, gripper=None)
             return self._refuse(Verdict.NO_SUCH_MOTION, now, f"It has no {', '.join(lacking)}.")
         return None
+
+    def _too_old(self, said: Command, now: float) -> str:
+        if said.seen is None or said.seen > now:
+            return "A command echoes no state of this robot side, so that its age is not known."
+        return f"A command was {now - said.seen:.2g} s old, {self.max_delay:g} s are allowed."
 
     def _refuse(self, refusal: Verdict, now: float, reason: str = "") -> Verdict:
         self.refused += 1
@@ -230,3 +261,11 @@ class Gate:
             verdict, reason = told, self._reason
         motion = Motion.NONE if self.resting else Motion.ALLOWED if wish != STILL else Motion.RAMPING
         return Gated(self._twist, self._frame, gripper, scale, motion, verdict, reason)
+
+
+def _remember(whom: dict[int, tuple[int, int]], operator: int, last: tuple[int, int]) -> None:
+    """Note an operator's last message as the newest of OPERATORS_KEPT."""
+    whom.pop(operator, None)
+    whom[operator] = last
+    if len(whom) > OPERATORS_KEPT:
+        del whom[next(iter(whom))]

@@ -5,10 +5,24 @@ from __future__ import annotations
 import json
 import re
 import socket
+from collections.abc import Sequence
 
 import zenoh
 
 from overreach.errors import LinkError, SetupError
+
+SEND_BUFFER = 32768
+"""What may wait in a connection [bytes]: more of it would only be older."""
+LONGEST_WHOLE = 1 << 20
+"""Longest message [bytes] that is put together from its parts."""
+CONNECTIONS = 1000
+"""At most so many at a time, and so many that have said nothing yet ..."""
+ACCEPT_MS = 3000
+"""... for at most this long [ms]."""
+WAIT_US = 1000
+"""A peer that takes no answers holds up who gives them by at most this long [us]: then it is cut off."""
+REQUESTS_HZ = 200.0
+"""Requests of one peer that come sooner after each other than this often are not looked at."""
 
 _ENDPOINT = re.compile(r"^(tcp|udp)/(\[[0-9a-fA-F:]+\]|[^/:\s]+):(\d{1,5})$")
 
@@ -30,8 +44,10 @@ def free_port(host: str = "127.0.0.1") -> int:
         return port
 
 
-def open_session(listen: str | None = None, connect: str | None = None) -> zenoh.Session:
+def open_session(listen: str | None = None, connect: str | None = None, seldom: Sequence[str] = ()) -> zenoh.Session:
     """Open a peer that listens at or connects to one endpoint and looks for no other.
+
+    seldom: keys at which each peer may ask for something at most REQUESTS_HZ times a second.
 
     Raises LinkError if it cannot listen at the endpoint. A connection is retried forever.
     """
@@ -47,7 +63,19 @@ def open_session(listen: str | None = None, connect: str | None = None) -> zenoh
         "connect/retry": {"period_init_ms": 20, "period_max_ms": 500, "period_increase_factor": 1.5},
         "transport/link/tx/lease": 2000,
         "transport/link/tx/keep_alive": 4,
+        "transport/link/tcp/so_sndbuf": SEND_BUFFER,
+        "transport/link/rx/max_message_size": LONGEST_WHOLE,
+        "transport/shared_memory/enabled": False,
+        "transport/unicast/accept_timeout": ACCEPT_MS,
+        "transport/unicast/accept_pending": CONNECTIONS,
+        "transport/unicast/max_sessions": CONNECTIONS,
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 0,
     }
+    if listen:
+        settings["transport/link/tx/queue/congestion_control/block/wait_before_close"] = WAIT_US
+    if seldom:
+        rules = [{"key_expr": key, "freq": REQUESTS_HZ} for key in seldom]
+        settings["downsampling"] = [{"id": "seldom", "flows": ["ingress"], "messages": ["query"], "rules": rules}]
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
     try:

@@ -3,6 +3,7 @@
 operator side                              robot side
     Command ---- overreach/NAME/command -->   latest wins
     Request ---- overreach/NAME/request -->   each answered: Accepted or Refused
+    Stop ------- overreach/NAME/stop ----->   the same, on a connection of its own; newest wins
     Hello ------ overreach/NAME/hello ---->   answered: Welcome or Refused
             <--- overreach/NAME/state -----   State, latest wins
 """
@@ -33,7 +34,7 @@ ANY = "*"
 
 
 def key(robot: str, what: str) -> str:
-    """Return the Zenoh key of `what` (command, request, hello or state) for the robot called `robot`."""
+    """Return the Zenoh key of `what` (command, request, stop, hello or state) for the robot called `robot`."""
     return f"overreach/{robot}/{what}"
 
 
@@ -44,14 +45,18 @@ def check_name(name: str) -> str:
     return name
 
 
-class Choice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Message(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of the messages: what has a field that it should not have is refused."""
+
+
+class Choice(Message, frozen=True):
     """A plug by its name, with the parameters that are set; the others keep their defaults."""
 
     name: str
     parameters: dict[str, float | str] = {}
 
 
-class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Settings(Message, frozen=True):
     """What an operator may change while the robot runs.
 
     law: a law or whole body; blend: for the laws that take one; frame: in which the pages command; workspace: where
@@ -65,7 +70,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     speed_scale: float = 1.0
 
 
-class Plug(msgspec.Struct, frozen=True):
+class Plug(Message, frozen=True):
     """A law or blend to choose: its summary, its parameters, and whether it takes a blend."""
 
     summary: str
@@ -73,7 +78,7 @@ class Plug(msgspec.Struct, frozen=True):
     blends: bool = False
 
 
-class Scene(msgspec.Struct, frozen=True):
+class Scene(Message, frozen=True):
     """What is drawn around the base: closed lines through (x, y) [m] in the base frame.
 
     footprint: length and width of the base [m]; workspace: where the arm works alone; bands: where base and arm blend.
@@ -84,7 +89,7 @@ class Scene(msgspec.Struct, frozen=True):
     bands: tuple[tuple[tuple[float, float], ...], ...]
 
 
-class ConfigureRequest(msgspec.Struct, frozen=True, tag="configure"):
+class ConfigureRequest(Message, frozen=True, tag="configure"):
     """Use these settings, all or none."""
 
     settings: Settings
@@ -93,24 +98,24 @@ class ConfigureRequest(msgspec.Struct, frozen=True, tag="configure"):
 AnyRequest = StopRequest | ResetRequest | ArmRequest | DisarmRequest | RestartRequest | ConfigureRequest
 
 
-class Accepted(msgspec.Struct, frozen=True, tag="accepted"):
+class Accepted(Message, frozen=True, tag="accepted"):
     """The request was carried out."""
 
 
-class Refused(msgspec.Struct, frozen=True, tag="refused"):
+class Refused(Message, frozen=True, tag="refused"):
     """The request was not carried out, and why, in a sentence for the operator."""
 
     reason: str
 
 
-class Hello(msgspec.Struct, frozen=True):
+class Hello(Message, frozen=True):
     """The operator side's first message."""
 
     protocol: int
     version: str
 
 
-class Welcome(msgspec.Struct, frozen=True, tag="welcome"):
+class Welcome(Message, frozen=True, tag="welcome"):
     """The robot side's answer to a hello: what it is.
 
     name: in the network; model: which robot; rate [Hz]; limits: of the command, where a stick is at its end; reach: of
@@ -129,6 +134,7 @@ class Welcome(msgspec.Struct, frozen=True, tag="welcome"):
     obeys: tuple[str, ...]
     axes: dict[str, tuple[str, str]]
     stop_time: float
+    max_delay: float
     simulated: bool
     laws: dict[str, Plug]
     blends: dict[str, Plug]
@@ -141,11 +147,12 @@ class Welcome(msgspec.Struct, frozen=True, tag="welcome"):
 Answer = Accepted | Refused | Welcome
 
 
-class State(msgspec.Struct, frozen=True, gc=False):
+class State(Message, frozen=True, gc=False):
     """What the robot side tells, at least 50 times a second.
 
     t [s]: on the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq
-    of their last accepted command, and the `t` of the state that they had heard of when sending it. verdict, word,
+    of their last accepted command, and the `t` of the state that they had heard of when sending it; heard: seq of the
+    newest that came from them, accepted or not; age [s]: how old that was when it came. verdict, word,
     sentence, look: as in `verdicts`; scale: the part of the command that is carried out; stopped: whether it is
     stopped or faulted, so that only a reset leads out. twist, in `frame`, and gripper: the command that the gate
     let through; forward [rad]: where x of the frame in the settings points, as a heading in the world. l, psi,
@@ -160,7 +167,9 @@ class State(msgspec.Struct, frozen=True, gc=False):
     tick: int
     operator: int
     ack: int
-    seen: float
+    seen: float | None
+    heard: int
+    age: float
     verdict: str
     word: str
     sentence: str
@@ -198,6 +207,7 @@ class State(msgspec.Struct, frozen=True, gc=False):
 encode = msgspec.msgpack.Encoder().encode
 decode_command = msgspec.msgpack.Decoder(Command).decode
 decode_request = msgspec.msgpack.Decoder(AnyRequest).decode
+decode_stop = msgspec.msgpack.Decoder(StopRequest).decode
 decode_hello = msgspec.msgpack.Decoder(Hello).decode
 decode_answer = msgspec.msgpack.Decoder(Answer).decode
 decode_state = msgspec.msgpack.Decoder(State).decode

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 from collections.abc import Callable
 from typing import final
 
@@ -29,11 +30,14 @@ from overreach.link.messages import (
     encode,
     key,
 )
+from overreach.link.pace import Pace
 from overreach.requests import DisarmRequest, StopRequest
 from overreach.types import Command
 
-ANSWER_S = 1.0
-"""How long to wait for an answer [s]."""
+ANSWER_S = 1.2
+"""How long to wait for an answer [s] ..."""
+PATIENCE_S = 0.4
+"""... and after how long to ask again: a busy robot side takes only so many requests."""
 LOADING_S = 10.0
 """How long new settings may take [s]: a law that is used for the first time has its libraries loaded first."""
 AGAIN_S = 0.02
@@ -52,8 +56,15 @@ class OperatorEnd:
         self.endpoint = connect
         self.robot = robot
         self._given = robot
+        self.t: float | None = None
+        """The time of the newest state that has come [s]: what a command echoes as `seen`."""
         self._on_state: Callable[[State], None] | None = None
         self._session = open_session(connect=connect)
+        self._urgent = open_session(connect=connect)
+        """A connection of its own: what goes there waits for nothing that is on its way on the other."""
+        self._pace = Pace()
+        self._clock = MonotonicClock()
+        self._turn = threading.Lock()
         self._commands: zenoh.Publisher | None = None
         self._states: zenoh.Subscriber[None] | None = None
 
@@ -63,12 +74,24 @@ class OperatorEnd:
 
         def receive(sample: zenoh.Sample) -> None:
             with contextlib.suppress(msgspec.DecodeError):  # of another protocol: `seek` says so
-                on_state(decode_state(sample.payload.to_bytes()))
+                state = decode_state(sample.payload.to_bytes())
+                self.t = state.t
+                with self._turn:
+                    next_ = self._pace.heard(state.operator, state.heard, self._clock.now())
+                    if next_ is not None:
+                        self._put(next_)
+                on_state(state)
 
         self._states = self._session.declare_subscriber(key(self.robot, "state"), receive)
 
     def send(self, command: Command) -> None:
-        """Send a command; it is dropped if the network is congested (the next one replaces it)."""
+        """Send a command, or keep the newest until those on their way were heard. Dropped in a congested network."""
+        with self._turn:
+            now = self._pace.send(command, self._clock.now())
+            if now is not None:
+                self._put(now)
+
+    def _put(self, command: Command) -> None:
         commands = self._commands
         if commands is None:
             commands = self._commands = self._session.declare_publisher(
@@ -82,7 +105,8 @@ class OperatorEnd:
 
     def _ask(self, what: str, message: object, timeout_s: float, robot: str = "") -> dict[str, Answer]:
         """Return the answers by the names of the robots that gave them; `robot` "" asks all."""
-        replies = self._session.get(
+        session = self._urgent if isinstance(message, URGENT) else self._session
+        replies = session.get(
             key(robot or ANY, what),
             payload=encode(message),
             timeout=timeout_s,
@@ -99,12 +123,14 @@ class OperatorEnd:
 
     def request(self, request: AnyRequest) -> Accepted | Refused:
         """Ask the robot side for something; return its answer. Blocks for at most ANSWER_S, settings for LOADING_S."""
-        answers = self._ask(
-            "request", request, LOADING_S if isinstance(request, ConfigureRequest) else ANSWER_S, self.robot
-        )
-        answer = answers.get(self.robot)
-        if isinstance(answer, Accepted | Refused):
-            return answer
+        what = "stop" if isinstance(request, StopRequest) else "request"
+        slow = isinstance(request, ConfigureRequest)
+        until = self._clock.now() + (LOADING_S if slow else ANSWER_S)
+        while (left := until - self._clock.now()) > 0.0:
+            answer = self._ask(what, request, min(PATIENCE_S, left), self.robot).get(self.robot)
+            if isinstance(answer, Accepted | Refused):
+                return answer
+            self._clock.sleep_until(self._clock.now() + AGAIN_S)
         return Refused("No answer from the robot side.")
 
     def welcome(self, wait_s: float, ended: Callable[[], bool] = lambda: False) -> Welcome:
@@ -159,4 +185,5 @@ class OperatorEnd:
 
     def close(self) -> None:
         """Close the session; without this the process could hang at its end."""
-        self._session.close()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type
+        for session in (self._urgent, self._session):
+            session.close()  # type: ignore[no-untyped-call]  # zenoh's stub lacks the return type

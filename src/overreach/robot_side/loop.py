@@ -13,6 +13,7 @@ from overreach.clock import Clock
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
 from overreach.errors import OverreachError, SetupError, told
+from overreach.gate.gate import MAX_DELAY_S
 from overreach.link.messages import (
     PROTOCOL,
     Accepted,
@@ -21,6 +22,7 @@ from overreach.link.messages import (
     ConfigureRequest,
     Hello,
     Refused,
+    Settings,
     encode,
 )
 from overreach.link.robot_end import RobotEnd
@@ -50,8 +52,9 @@ def _libraries(law: Choice) -> tuple[str, ...]:
 
 
 class Building(NamedTuple):
-    """Settings that are being made ready: what becomes of them, who is told, whether it may take a while."""
+    """Settings that are being made ready: which, what becomes of them, who is told, whether it may take a while."""
 
+    settings: Settings
     future: Future[Built]
     answer: Callable[[Answer], None]
     slow: bool
@@ -69,7 +72,15 @@ def _of_another(hello: Hello) -> Refused:
 class Loop:
     """Reads robot and link, decides, writes. `tick` lets no exception of a law or robot out; `run` keeps time."""
 
-    def __init__(self, robot: Robot, link: RobotEnd, clock: Clock, rate: float = 200.0, law: Choice = EXACT) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        link: RobotEnd,
+        clock: Clock,
+        rate: float = 200.0,
+        law: Choice = EXACT,
+        max_delay: float = MAX_DELAY_S,
+    ) -> None:
         self.rate = rate
         self.overruns = 0
         self._robot = robot
@@ -78,7 +89,7 @@ class Loop:
         self._model = robot.model
         built = build(usual(robot.model, law), robot.model)
         self.settings = built.settings
-        self.pilot = Pilot(built.model, built.law)
+        self.pilot = Pilot(built.model, built.law, max_delay=max_delay)
         self._reception = Reception(self.pilot, link.name, rate, robot.simulated, self.settings)
         self._reception.take(built)
         self._loaded = {_libraries(law)}
@@ -114,7 +125,7 @@ class Loop:
         """Run one period: read robot and link, decide, write to both."""
         self._serve(now)
         state = self._read(now)
-        command = self._link.newest_command()
+        command = self._link.newest_command(self.pilot.gate.latch.operator)
         if command is not None and self._building is not None and self._building.slow:
             self._spend(command, now)
         heard = self.pilot.gate.seq
@@ -213,6 +224,9 @@ class Loop:
     def _begin(self, request: ConfigureRequest, answer: Callable[[Answer], None]) -> None:
         """Begin to build new settings beside the loop; raises SetupError if they cannot be used now."""
         settings, resting = request.settings, self.pilot.resting
+        if self._building is not None and self._building.settings == settings:  # asked for again
+            self._building = self._building._replace(answer=answer)
+            return
         if settings.frame is not self.settings.frame and not resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
         law = settings.law.name
@@ -223,7 +237,7 @@ class Loop:
             raise SetupError(f"Let go first: {law!r} has to be loaded, which makes the loop late for a moment.")
         if self._building is not None:
             raise SetupError("Other settings are being made ready: try again.")
-        self._building = Building(self._builder.begin(settings, self._model), answer, slow)
+        self._building = Building(settings, self._builder.begin(settings, self._model), answer, slow)
 
     def _swap(self, building: Building) -> None:
         """Put finished settings into force, or answer why they cannot be used."""

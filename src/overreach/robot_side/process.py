@@ -11,6 +11,7 @@ from types import FrameType
 
 from overreach.clock import Clock, MonotonicClock
 from overreach.errors import SetupError
+from overreach.gate.gate import MAX_DELAY_S, check_delay
 from overreach.host.hosted import Hosted
 from overreach.link.endpoint import check_endpoint
 from overreach.link.messages import Choice, check_name
@@ -43,14 +44,16 @@ def run_robot(
     name: str = "",
     law: Choice = EXACT,
     hosted: bool = True,
+    max_delay: float = MAX_DELAY_S,
 ) -> None:
     """Run the robot side until SIGINT, SIGTERM or SIGHUP or, with `parent`, until that process has ended.
 
     Each of these ramps the robot to zero. name: its name in the network, by default the robot's own; hosted: whether
-    the robot runs in a process of its own, which ramps by itself when this one is held up, hangs or dies. Raises
-    SetupError or LinkError before anything moves.
+    the robot runs in a process of its own, which ramps by itself when this one is held up, hangs or dies;
+    max_delay [s]: how old a command may be. Raises SetupError or LinkError before anything moves.
     """
     check_rate(rate)
+    check_delay(max_delay)
     endpoint = check_endpoint(listen)
     if name:
         check_name(name)
@@ -75,7 +78,7 @@ def run_robot(
             left.callback(_stop, device, clock)  # whatever comes in between, also before the first tick
         link = RobotEnd(endpoint, name or check_name(device.model.name))
         left.callback(link.close)
-        loop = Loop(device, link, clock, rate, law)
+        loop = Loop(device, link, clock, rate, law, max_delay)
         fifo = real_time(LOOP)
         if parent is None:
             note = "" if fifo else " (no real-time priority: see `overreach doctor`)"

@@ -57,6 +57,8 @@ class Reporter:
             operator=tick.operator,
             ack=pilot.gate.seq,
             seen=pilot.gate.seen,
+            heard=pilot.gate.heard,
+            age=pilot.gate.age,
             verdict=verdict.value,
             word=verdict.word,
             sentence=tick.sentence,

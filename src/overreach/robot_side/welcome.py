@@ -45,6 +45,7 @@ class Reception:
             obeys=tuple(sorted(obeys(model))),
             axes={frame.value: axes(frame) for frame in Frame},
             stop_time=STALE_S + 1.0 / self._rate + self._pilot.controller.guard.stop_s,
+            max_delay=self._pilot.gate.max_delay,
             simulated=self._simulated,
             laws=self.laws,
             blends=self.blends,

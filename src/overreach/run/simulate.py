@@ -59,7 +59,7 @@ def ticks(scenario: Scenario, law: WholeBody, pilot: Pilot | None = None) -> Ite
     pilot.ask(ArmRequest(OPERATOR), 0.0)
     for k in range(scenario.steps):
         t = k * scenario.dt
-        command = Command(OPERATOR, k + 1, 1, True, of_two(frame, *scenario.command_at(t)), frame)
+        command = Command(OPERATOR, k + 1, 1, True, of_two(frame, *scenario.command_at(t)), frame, seen=t)
         tick = pilot.tick(robot.read(t), command, t, scenario.dt)
         robot.write(tick.base, tick.joints, tick.gripper, t, t + scenario.dt)
         yield tick, robot.true

@@ -17,7 +17,7 @@ export class Link {
     this.waiting = new Map();
     this.nextId = 1;
     this.seq = 0;
-    this.t = 0; // the robot's newest time that has come here [s]
+    this.t = null; // the robot's newest time that has come here [s]
     this.shown = 0; // number of the newest picture
     this.told = 0; // number of the newest picture that the cockpit has been told of
     this.delay = new Delay();
@@ -61,7 +61,7 @@ export class Link {
     } else if (message.type === "welcome") {
       const again = this.operator === message.operator;
       this.operator = message.operator;
-      this.t = 0;
+      this.t = null;
       this.delay.reset();
       if (!again) this.told = this.shown = 0;
       this.handlers.welcome(message.robot, message.settings, message.scene);
@@ -111,7 +111,7 @@ export class Link {
       deaf.close();
       return this.lost(deaf);
     }
-    if (this.ready && this.away === 0 && !(now - this.sentAt < BEAT_MS)) this.sendNumbered({ type: "beat" });
+    if (this.ready && this.away === 0 && !(now - this.sentAt < BEAT_MS)) this.sendNumbered({ type: "beat", seen: this.t });
   }
 
   // Ask for one of stop, reset, arm, disarm, restart, or for a frame; resolves to {done, reason, late}.

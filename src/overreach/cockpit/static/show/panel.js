@@ -8,6 +8,7 @@ const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
 
 const $ = (id) => document.getElementById(id);
 const signed = (value, digits = 2) => (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits).replace("-", "−");
+const brief = (us) => (us / 1000).toFixed(2);
 const put = (element, text) => {
   if (element.textContent !== text) element.textContent = text;
 };
@@ -20,6 +21,7 @@ export class Panel {
     this.until = 0;
     this.viewOnly = ""; // why nobody drives from here
     this.delay = 0;
+    this.maxDelay = 0; // how old a command may be [ms]
     this.shares = [...document.querySelectorAll(".share")].map((row) => ({
       name: row.dataset.share, bar: row.querySelector(".bar"), fill: row.querySelector("i"),
       who: row.querySelector(".who"), value: row.querySelector(".value"),
@@ -29,6 +31,7 @@ export class Panel {
   welcome(robot) {
     put($("robot"), `${robot.name} · ${robot.simulated ? "simulated" : "real"} · ${robot.rate} Hz`);
     put($("r-stop"), `${robot.stop_time.toFixed(2)} s`);
+    this.maxDelay = (robot.max_delay * 1000).toFixed(0);
     $("restart").hidden = !robot.simulated;
   }
 
@@ -70,7 +73,8 @@ export class Panel {
     put($("r-base"), `${signed(s.pose.x)}, ${signed(s.pose.y)} m · ${signed((s.pose.heading * 180) / Math.PI, 0)}°`);
     put($("r-speed"), `${Math.hypot(...s.velocity).toFixed(2)} m/s`);
     put($("r-refused"), `${s.refused}`);
-    put($("r-late"), s.late_p99 ? `${(s.late_p99 / 1000).toFixed(2)} ms` : "–");
+    put($("r-age"), s.operator && s.heard ? `${(s.age * 1000).toFixed(0)} of ${this.maxDelay} ms` : `at most ${this.maxDelay} ms`);
+    put($("r-late"), s.apart_p99 ? `${brief(s.late_p99)}, ${brief(s.apart_p99)} ms` : "–");
   }
 
   // A message that the next state must not overwrite.
