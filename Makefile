@@ -1,5 +1,7 @@
 # make drive: drive the simulated robot. make test: everything that must hold. make venv: the environment alone.
 # make reproduce: the paper's figures and the comparison, as report/report.html. make bench: what things cost.
+# make faults: every fault of SAFETY.md as often as is promised, and its table anew (45 minutes). make soak: 5 minutes,
+# or SOAK=1h, of driving while memory is looked at.
 # make mutate: whether a test fails for every small change of the gate (15 minutes; not part of make test).
 PYTHON ?= python3
 VENV ?= .venv
@@ -7,7 +9,7 @@ BIN := $(VENV)/bin
 comma := ,
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: drive reproduce test venv lint types bench mutate browser headline clean
+.PHONY: drive reproduce test venv lint types bench faults soak mutate browser headline clean
 
 drive: venv
 	@$(BIN)/overreach drive || [ $$? -eq 130 ]  # Ctrl-C is how it ends
@@ -19,7 +21,7 @@ venv: $(VENV)/.ready
 
 # What measures time has the machine to itself; the others run side by side.
 test: $(VENV)/.ready-dev browser lint types
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m "not real_time"
+	$(BIN)/python -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder -m "not real_time"
 	$(BIN)/python -m pytest -q -m real_time
 
 lint: $(VENV)/.ready-dev
@@ -32,6 +34,18 @@ types: $(VENV)/.ready-dev
 bench: $(VENV)/.ready-dev browser
 	$(BIN)/overreach bench
 	$(BIN)/python -m benchmarks
+
+SEED ?= 1
+SOAK ?= 5m
+
+faults: $(VENV)/.ready-dev browser
+	rm -rf build/reached
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile -m "fault and not real_time and not timed" --full --seed $(SEED)
+	$(BIN)/python -m pytest -q -m "fault and (real_time or timed)" --full --seed $(SEED)
+	$(BIN)/python -m tests.reached
+
+soak: $(VENV)/.ready-dev browser
+	$(BIN)/python -m tests.soak $(SOAK) build/soak.json
 
 mutate: $(VENV)/.ready-mutate
 	$(BIN)/python -m tests.mutation
@@ -63,4 +77,4 @@ $(VENV)/.ready-mutate: pyproject.toml constraints.txt
 	$(call install,.[all$(comma)dev$(comma)mutate],.ready .ready-all .ready-dev .ready-mutate)
 
 clean:
-	rm -rf $(VENV) dist build report .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) dist build/reached report .pytest_cache .mypy_cache .ruff_cache .hypothesis

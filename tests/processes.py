@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import psutil
@@ -36,9 +36,9 @@ def until(true: Callable[[], object], seconds: float = GENEROUS_S, what: str = "
 class Half:
     """One `overreach` process."""
 
-    def __init__(self, *arguments: str, env: dict[str, str] | None = None) -> None:
+    def __init__(self, *arguments: str, env: dict[str, str] | None = None, begin: Sequence[str] = ()) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "overreach", *arguments],
+            [*begin, sys.executable, "-m", "overreach", *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, env=env,
         )  # fmt: skip
 
@@ -71,9 +71,9 @@ class Half:
 
 
 @contextmanager
-def half(*arguments: str, env: dict[str, str] | None = None) -> Iterator[Half]:
-    """Run one process for the length of the block."""
-    running = Half(*arguments, env=env)
+def half(*arguments: str, env: dict[str, str] | None = None, begin: Sequence[str] = ()) -> Iterator[Half]:
+    """Run one process for the length of the block. begin: of its command line, as `ip netns exec`."""
+    running = Half(*arguments, env=env, begin=begin)
     try:
         yield running
     finally:

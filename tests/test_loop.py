@@ -401,7 +401,7 @@ def test_while_libraries_load_nobody_drives(bench: Bench, monkeypatch: pytest.Mo
     monkeypatch.setattr(loop._builder, "begin", lambda *_: going)
     wanted = msgspec.structs.replace(loop.settings, law=Choice("holistic"))
     commands: list[Command | None] = []
-    monkeypatch.setattr(loop._link, "newest_command", lambda: commands.pop() if commands else None)
+    monkeypatch.setattr(loop._link, "newest_command", lambda _operator: commands.pop() if commands else None)
     begun, law, whole = bench.clock.now(), loop.pilot.controller.law, loop.pilot.tick
     ticks: list[Tick] = []
 

@@ -13,6 +13,7 @@ from playwright.sync_api import BrowserContext, Error, Page
 
 from tests.browser.conftest import Cockpit
 from tests.browser.test_drive import arm
+from tests.browser.upgrade import upgrade
 from tests.processes import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.real_time]
@@ -289,19 +290,3 @@ def test_a_foreign_name_is_told_the_option(shared_cockpit: Cockpit, host: str, o
     assert answer.status == 403
     assert option in text
     assert "<script" not in text
-
-
-def upgrade(url: str, headers: dict[str, str], path: str = "/ws") -> int:
-    """Ask for a WebSocket and return the status of the answer."""
-    connection = http.client.HTTPConnection(url.removeprefix("http://"), timeout=10)
-    try:
-        handshake = {
-            "Connection": "Upgrade",
-            "Upgrade": "websocket",
-            "Sec-WebSocket-Version": "13",
-            "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
-        }
-        connection.request("GET", path, headers={**handshake, **headers})
-        return connection.getresponse().status
-    finally:
-        connection.close()

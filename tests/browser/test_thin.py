@@ -18,6 +18,7 @@ from tests.browser.conftest import Cockpit
 from tests.browser.hands import arm, middle
 from tests.narrow import Narrow, narrow
 from tests.processes import GENEROUS_S, until
+from tests.reached import Reached
 
 pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 LATE_S = 0.5
@@ -158,7 +159,7 @@ def test_at_most_sixty_a_second(browser: Browser, debugging_port: int, cockpit: 
     page.close()
 
 
-def test_a_thin_downlink_drives(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None:
+def test_a_thin_downlink_drives(thin: tuple[Page, Narrow], cockpit: Cockpit, reached: Reached) -> None:
     """On 20 kB/s from cockpit to page one drives throughout, by pictures at most 0.5 s old; a stop is told as done."""
     (page, link), observer = thin, cockpit.observer
     arm(page, observer)
@@ -187,6 +188,12 @@ def test_a_thin_downlink_drives(thin: tuple[Page, Narrow], cockpit: Cockpit) -> 
     until(lambda: page.inner_text("#verdict-word") == "Stopped", what="the word")
     page.wait_for_timeout(1500)
     assert not {"View only", "Not done", "No answer"} & set(page.evaluate("words"))
+    old = sorted(ages)[int(0.95 * len(ages))]
+    late = max(s.late_p99 for s in list(observer.states)[-600:]) / 1e3
+    reached.say(
+        "slow or stalled page",
+        f"20 kB/s: pictures {old:.2f} s old (95 %), {max(ages):.2f} s at most; loop late by {late:.2f} ms (p99)",
+    )
 
 
 def test_a_thinner_downlink_shows_only(thin: tuple[Page, Narrow], cockpit: Cockpit) -> None:

@@ -20,7 +20,7 @@ from tests.logged import Entry, Log
 from tests.processes import Driver, Half, Observer, gone, half, port_is_free, robot, until
 from tests.reached import Reached
 
-pytestmark = pytest.mark.real_time
+pytestmark = pytest.mark.timed
 
 PERIOD_S = 0.005
 CHANGE = (3.5, 12.0, 20.0, 20.0)
@@ -145,10 +145,14 @@ def test_a_pause_of_the_robot_side(log: Log, reached: Reached) -> None:
             way = sum(before.v_b * (after.at - before.at) for before, after in pairwise(entries))
             most = max(most, way)
             assert way < 0.05
-            assert observer.now.verdict == "paused"
             assert not observer.now.armed
-            assert observer.now.sentence.startswith("The robot side was held up")
             assert not any(log.newest().rates)
+            if observer.now.verdict == "fault":  # it was in the middle of a decision, which then took 0.9 s
+                assert observer.now.sentence.startswith("The law 'exact' takes 9")
+                assert observer.link.request(ResetRequest()) == Accepted()
+            else:
+                assert observer.now.verdict == "paused"
+                assert observer.now.sentence.startswith("The robot side was held up")
             driver.arm()
             driver.drive(0.1)
             assert observer.now.verdict != "paused"

@@ -14,6 +14,7 @@ from overreach.link.messages import Accepted, Choice, ConfigureRequest, Refused,
 from overreach.requests import ArmRequest, ResetRequest
 from tests.plugin import install
 from tests.processes import Driver, Half, Observer, half, port_is_free, robot, until
+from tests.reached import Reached
 
 pytestmark = pytest.mark.real_time
 
@@ -54,7 +55,7 @@ def drive_until(driver: Driver, observer: Observer, verdict: str) -> None:
         ("hangs", "The law 'hangs' takes 3"),
     ],
 )
-def test_a_bad_law_while_driving(law: str, says: str, tmp_path: Path) -> None:
+def test_a_bad_law_while_driving(law: str, says: str, tmp_path: Path, reached: Reached) -> None:
     """A law that goes bad in motion: a ramp, FAULT with its reason; reset, another law, arm and a press go on."""
     with robot(env=install(tmp_path)) as (endpoint, running, observer):
         use(observer, law)
@@ -80,6 +81,9 @@ def test_a_bad_law_while_driving(law: str, says: str, tmp_path: Path) -> None:
         driver.send(held=False)
         assert running.end() == 0
         assert port_is_free(int(endpoint.rsplit(":", 1)[1]))
+        reached.say(
+            "plug-in raises, hangs, returns nonsense", f"law {law}: FAULT, a ramp, and on after Reset; 0 escapes"
+        )
 
 
 def coming_to_rest(observer: Observer, running: Half, how: signal.Signals, code: int) -> list[State]:
@@ -94,7 +98,7 @@ def coming_to_rest(observer: Observer, running: Half, how: signal.Signals, code:
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_every_ordered_end_is_a_ramp(how: signal.Signals) -> None:
+def test_every_ordered_end_is_a_ramp(how: signal.Signals, reached: Reached) -> None:
     """A robot side that is told to end in motion ramps to zero first, says so, and leaves nothing behind."""
     with robot() as (endpoint, running, observer):
         states = coming_to_rest(observer, running, how, 0)
@@ -105,6 +109,10 @@ def test_every_ordered_end_is_a_ramp(how: signal.Signals) -> None:
         assert ramp[-1].sentence == "The robot side was told to end: the robot comes to rest."
         bounded(states)
         assert port_is_free(int(endpoint.rsplit(":", 1)[1]))
+        steepest = max(before.base.v_x - after.base.v_x for before, after in pairwise(ramp))
+        reached.say(
+            "INT, TERM, HUP, exception", f"{how.name}: {len(ramp)} ticks to zero, {steepest:.4f} m/s each at most"
+        )
 
 
 def test_a_plug_in_that_leaves_is_a_ramp_too(tmp_path: Path) -> None:

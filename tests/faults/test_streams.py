@@ -13,15 +13,19 @@ from collections import Counter
 import msgspec
 import pytest
 
+from overreach.arm.chain import Chain
 from overreach.control.pilot import Pilot
 from overreach.gate.gate import STALE_S
+from overreach.law.body import NO_SOLUTION
 from overreach.law.laws import Exact
 from overreach.model.model import channels
 from overreach.model.planar import planar
+from overreach.plugs import load_law
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, StopRequest
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import Command, Frame, Twist
+from overreach.types import Command, Frame, HandTwist, Plan, Split, Twist
 from overreach.verdicts import Verdict
+from tests.guarded import test_worst
 from tests.reached import Reached
 from tests.said import said
 from tests.side import CHANGE, ME, MOST, STOP_S, Side
@@ -234,16 +238,13 @@ def test_eight_operators_at_once(reached: Reached) -> None:
     latch = bare.pilot.gate.latch
     people = {operator: {"seq": 0, "grip": 0, "held": 0} for operator in range(1, 9)}
     ways = {operator: (0.3 * math.cos(operator), 0.3 * math.sin(operator)) for operator in people}
-    who, drove, drivers = latch.operator, 0, Counter[int]()
+    source, drivers = 0, Counter[int]()
     for _ in range(ticks):
         operator = rng.choice(list(people))
         one = people[operator]
         if rng.random() < 0.01:
             ask = ArmRequest(operator, one["grip"]) if rng.random() < 0.5 else DisarmRequest(operator)
             bare.pilot.ask(ask, bare.now)
-            if latch.operator != who:
-                assert bare.pilot.gate.resting
-                who = latch.operator
         if rng.random() < 0.02:
             one["held"] = 1 - one["held"]
             one["grip"] += one["held"]
@@ -254,12 +255,12 @@ def test_eight_operators_at_once(reached: Reached) -> None:
         )
         bare.tick(command)
         twist = bare.pilot.gate._twist
-        if twist != Twist():
-            x, y = ways[who]
+        source = 0 if twist == Twist() else source or latch.operator
+        if source:  # from rest to rest there is one
+            x, y = ways[source]
             assert abs(twist.v_x * y - twist.v_y * x) < 1e-12
             assert twist.v_x * x + twist.v_y * y > 0.0
-            drove += 1
-            drivers[who] += 1
+            drivers[source] += 1
         if rng.random() < 0.0005:
             for _ in range(220):
                 bare.tick()
@@ -331,6 +332,48 @@ def test_joints_stay_within_their_limits(reached: Reached) -> None:
         "joint limit, singularity, out of reach",
         f"{ticks:,} ticks: overshoot {max(0.0, past):.1g} rad, joint speed {fastest:.3f} of its limit at most",
     )
+
+
+def test_feedback_at_its_worst(reached: Reached) -> None:
+    """Any law and any stream of states, in any order and with any acts: bounded, and zero within v/a of a stop."""
+    rng, times = random.Random(reached.seed), reached.times(2_000)
+    one = test_worst.test_any_plan_and_any_feedback.hypothesis.inner_test  # type: ignore[attr-defined]
+    for _ in range(times):
+        one(rng.randrange(10**9))
+    reached.say(
+        "feedback NaN, out of range, biased, frozen, not following",
+        f"{times:,} random streams of wild states and laws, with stops: every limit kept, zero within v/a",
+    )
+
+
+@pytest.mark.parametrize("name", ["qp", "holistic", "weighted"])
+def test_a_baseline_that_fails(name: str, reached: Reached) -> None:
+    """A rival whose plan raises, is none, or is not finite at random times: it rests, and no exception leaves."""
+    rng, ticks = random.Random(reached.seed), reached.times(20_000)
+    law = load_law(name, {})
+    planner, faults = law.planner(planar()), 0
+
+    def plan(chain: Chain, u: HandTwist, base: Twist) -> object:
+        if rng.random() < 0.01:
+            kind = rng.randrange(4)
+            if kind == 0:
+                raise rng.choice((ValueError, ZeroDivisionError, MemoryError, ArithmeticError))("of a solver")
+            return (None, "no plan", Plan(Split(0.0, 0.0, math.nan, 0.0, 0.0, 0.0)), NO_SOLUTION)[kind]
+        return planner(chain, u, base)
+
+    pilot = Pilot(planar(), law)
+    pilot.configure(law, planner=plan)  # type: ignore[arg-type]
+    bare, grip = Bare(rng.uniform(1.0, 1e5), pilot), 1
+    for k in range(ticks):
+        bare.tick(said(ME, k + 1, grip, True, 0.3 * math.sin(0.002 * k), 0.2, Frame.WORLD, seen=bare.now))
+        if pilot.gate.latch.fault and not any(bare.rates):
+            faults += 1
+            pilot.ask(ResetRequest(), bare.now)
+            pilot.ask(ArmRequest(ME, grip), bare.now)
+            grip += 1
+    assert faults > 0.002 * ticks
+    told = f"{name}: {ticks:,} ticks, {faults} failures: a ramp each, 0 exceptions left the pilot"
+    reached.say("baseline's solver fails", told)
 
 
 def test_a_state_is_not_changed_by_being_looked_at() -> None:

@@ -206,19 +206,28 @@ def test_a_refusal_is_told_for_half_a_second() -> None:
 
 
 def test_a_second_operator_waits_for_a_second_of_silence() -> None:
-    """Another may arm once the robot rests, in both parts, and the first has been silent for 1 s, to the last bit."""
+    """Another may arm once the robot rests, in both parts, and the first has not held for 1 s, to the last bit.
+
+    That the first is still there, and says so, does not keep the robot.
+    """
     gate = Gate()
-    gate.arm(ME, 0, 0.0)
-    gate.accept(said(ME, 1, 1, False, 0.0, 0.0, seen=0.0), 0.0)
+    gate.arm(ME, 0, -5.0)
+    gate.accept(said(ME, 1, 1, True, 0.0, 0.0, seen=0.0), 0.0)
     gate.tick(0.0, DT)
+    gate.accept(said(ME, 2, 1, False, 0.0, 0.0, seen=0.9), 0.9)
     assert gate.arm(OTHER, 0, 1.0) is Verdict.OTHER_OPERATOR
-    assert gate.arm(ME, 0, 1.0) is None
-    assert gate.seq == 1  # to arm again loses nothing
+    again = Gate()
+    again.arm(ME, 0, 0.0)
+    again.accept(said(ME, 1, 1, False, 0.0, 0.0, seen=0.0), 0.0)
+    assert again.arm(ME, 0, 1.0) is None
+    assert again.seq == 1  # to arm again loses nothing
+    assert again.arm(OTHER, 0, 2.0) is Verdict.OTHER_OPERATOR  # but counts as a hold
+    assert again.arm(OTHER, 0, math.nextafter(2.0, 3.0)) is None
     assert gate.accept(said(1, 1, 1, True, 0.0, 0.0, seen=1.0), 1.0) is Verdict.OTHER_OPERATOR
     assert gate.arm(OTHER, 0, math.nextafter(1.0, 2.0)) is None
     assert gate.latch.operator == OTHER
     assert gate.seq == 0  # nothing of the first's counts
-    gate.accept(said(OTHER, 1, 1, False, 0.0, 0.0, seen=2.0), 2.0)
+    gate.accept(said(OTHER, 1, 1, True, 0.0, 0.0, seen=2.0), 2.0)
     assert gate.seq == 1
     assert gate.arm(ME, 0, 2.5) is Verdict.OTHER_OPERATOR
     assert gate.arm(ME, 0, 9.0) is None
@@ -231,7 +240,27 @@ def test_a_second_operator_waits_for_a_second_of_silence() -> None:
     assert Gate().arm(OTHER, 0, 0.0) is None
     silent = Gate()
     silent.arm(ME, 0, 0.0)  # and was never heard
-    assert silent.arm(OTHER, 0, 0.0) is None
+    assert silent.arm(OTHER, 0, 1.0) is Verdict.OTHER_OPERATOR
+    assert silent.arm(OTHER, 0, 1.1) is None
+
+
+@given(starts)
+def test_who_was_disarmed_in_motion_does_not_keep_the_robot(start: float) -> None:
+    """Another may arm at once, and press; the robot moves for them only after it has come to rest."""
+    bench = moving(start)
+    bench.gate.latch.disarm()
+    other = Bench(start, OTHER)
+    other.gate, other.now = bench.gate, bench.now
+    assert other.arm() is None
+    other.press()
+    passed = [other.tick(other.stick(v_c=0.3)) for _ in range(round(RAMP_S / DT) - 1)]
+    assert set(passed) == {Verdict.RELEASED}
+    assert not bench.gate.resting
+    speeds = [v_c for v_c, _ in other.out]
+    assert speeds == sorted(speeds, reverse=True)
+    assert other.drive(0.5, v_c=0.3) is Verdict.MOVING
+    assert min(v_c for v_c, _ in other.out) == 0.0
+    assert other.v_c == 0.3
 
 
 def test_numbers_of_messages_and_presses_begin_at_one() -> None:

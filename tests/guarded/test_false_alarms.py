@@ -8,9 +8,10 @@ import pytest
 
 from overreach.robots.imperfect import Imperfection
 from overreach.verdicts import Verdict
+from tests.reached import Reached
 from tests.side import Side
 
-HOUR_S = 3600.0
+HOUR_S = 3600
 RATE_HZ = 50.0
 """The slowest loop there is: the most time between looks."""
 HONEST = {
@@ -28,12 +29,13 @@ HONEST = {
 
 
 @pytest.mark.parametrize("name", HONEST)
-def test_no_false_alarm_in_an_hour(name: str) -> None:
+def test_no_false_alarm_in_an_hour(name: str, reached: Reached) -> None:
     """In an hour of random driving, letting go and pressing again, a robot that is only imperfect is never a fault."""
     chance = random.Random(name)
     side = Side(start=chance.uniform(1.0, 1e4), dt=1.0 / RATE_HZ, imperfection=HONEST[name])
     side.arm()
-    end = side.now + HOUR_S
+    seconds = reached.times(HOUR_S)
+    end = side.now + seconds
     went = 0.0
     while side.now < end:
         size = chance.choice((0.4, 0.4, 0.1, 0.03))
@@ -41,6 +43,7 @@ def test_no_false_alarm_in_an_hour(name: str) -> None:
         side.grip += not side.held
         step = side.drive(chance.uniform(0.1, 6.0), chance.uniform(-size, size), chance.uniform(-size, size))
         went = max(went, abs(step.split.v_b))
-        assert step.verdict is not Verdict.FAULT, f"{side.now - end + HOUR_S:.2f} s: {step.fault}"
+        assert step.verdict is not Verdict.FAULT, f"{side.now - end + seconds:.2f} s: {step.fault}"
     side.check()
     assert went > 0.3  # it did drive
+    reached.say("feedback NaN, out of range, biased, frozen, not following", f"{name}: 0 false alarms in {seconds} s")

@@ -36,6 +36,7 @@ JUDGES = {
     "guard": ("guard",),
     "asked": ("feedback",),
     "stop": ("latch",),
+    "watchdog": ("watchdog",),
 }
 """Module -> the tests that judge it. The longest first."""
 CONFIG = '''

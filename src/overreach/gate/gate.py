@@ -92,7 +92,8 @@ class Gate:
         self.age = 0.0
         """... and how old it was when it came [s], 0 if that is not known."""
         self._said: Command | None = None
-        self._fresh_at = -math.inf
+        self._fresh_at = self._held_at = -math.inf
+        self._settling = False
         self._known: dict[int, tuple[int, int]] = {}
         self._others: dict[int, tuple[int, int]] = {}
         self._refusal = Verdict.OUT_OF_ORDER
@@ -129,20 +130,23 @@ class Gate:
         """Arm for `operator` at `now` [s]; return the verdict that forbids it, or None.
 
         Presses up to `grip` do not count: a dead-man that is already held moves nothing. The operator who armed before
-        keeps the robot until it rests and they have disarmed, or been silent for LOST_S.
+        keeps the robot until it rests and LOST_S have passed since they armed or held. One who has been disarmed does
+        not keep it; the robot comes to rest first.
         """
         latch = self.latch
         if latch.fault:
             return Verdict.FAULT
         if latch.stopped:
             return Verdict.STOPPED
+        if latch.armed and latch.operator != operator and not (self.resting and now - self._held_at > LOST_S):
+            return Verdict.OTHER_OPERATOR
         if latch.operator != operator:
-            if not self.resting or (latch.armed and now - self._fresh_at <= LOST_S):
-                return Verdict.OTHER_OPERATOR
             self._said = None
+            self._settling = not self.resting
         last = self._known.pop(operator, None) or self._others.pop(operator, NEVER)
         _remember(self._known, operator, last)
         self.heard, pressed = last
+        self._held_at = now
         latch.arm(operator, max(grip, pressed))
         return None
 
@@ -181,6 +185,8 @@ class Gate:
             latch.spend(said.grip)
         self._said = said
         self._fresh_at = now
+        if said.held:
+            self._held_at = now
         if lacking := self._lacking(said):
             self._said = _with(said, twist=STILL, gripper=None)
             return self._refuse(Verdict.NO_SUCH_MOTION, now, f"It has no {', '.join(lacking)}.")
@@ -221,7 +227,8 @@ class Gate:
             return STILL, Verdict.STOPPED
         if not latch.armed:
             return STILL, Verdict.PAUSED if latch.paused else Verdict.DISARMED
-        if said is None or said.operator != latch.operator or not said.held:
+        self._settling = self._settling and not self.resting
+        if self._settling or said is None or said.operator != latch.operator or not said.held:
             return STILL, Verdict.RELEASED
         age = now - self._fresh_at
         if age > LOST_S:

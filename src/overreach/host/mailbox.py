@@ -46,7 +46,7 @@ class Mailbox:
         at = (number & 1) * SLOT
         end = at + HEADER.size
         self._memory[end : end + length] = message
-        HEADER.pack_into(self._memory, at, number, length, crc32(message, number & 0xFFFFFFFF))
+        HEADER.pack_into(self._memory, at, number, length, _check(message, number))
 
     def get(self) -> bytes | None:
         """Return the newest whole message, if there has come one since the last call; else None."""
@@ -58,7 +58,7 @@ class Mailbox:
             if number <= self._number:
                 return None
             message = memory[at : at + min(length, SLOT)]
-            if crc32(message, number & 0xFFFFFFFF) == check:
+            if _check(message, number) == check:
                 self._number = number
                 return message
         return None
@@ -66,3 +66,8 @@ class Mailbox:
     def close(self) -> None:
         """Let go of the memory."""
         self._memory.close()
+
+
+def _check(message: bytes, number: int) -> int:
+    """Return the check sum of a message with its number."""
+    return crc32(message, crc32(number.to_bytes(8, "little")))

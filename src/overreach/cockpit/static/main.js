@@ -65,7 +65,7 @@ const link = new Link({
 });
 const stick = new Stick(link);
 stick.listeners.push(() => panel.stick(stick));
-link.soon = () => stick.held; // the next command acknowledges the picture
+link.soon = () => stick.held; // the next command acknowledges the picture, and no beat is needed
 stick.lost.push((why) => panel.tell(why === stick.barred ? "View only" : "Let go", why));
 
 function configure(settings, scene) {

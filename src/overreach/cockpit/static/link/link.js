@@ -111,7 +111,7 @@ export class Link {
       deaf.close();
       return this.lost(deaf);
     }
-    if (this.ready && this.away === 0 && !(now - this.sentAt < BEAT_MS)) this.sendNumbered({ type: "beat", seen: this.t });
+    if (this.ready && this.away === 0 && !this.soon?.() && !(now - this.sentAt < BEAT_MS)) this.sendNumbered({ type: "beat", seen: this.t });
   }
 
   // Ask for one of stop, reset, arm, disarm, restart, or for a frame; resolves to {done, reason, late}.
