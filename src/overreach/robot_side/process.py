@@ -16,7 +16,7 @@ from overreach.host.hosted import Hosted
 from overreach.link.endpoint import check_endpoint
 from overreach.link.messages import Choice, check_name
 from overreach.link.robot_end import RobotEnd
-from overreach.priority import LOOP, real_time
+from overreach.priority import LOOP, eager, real_time
 from overreach.robot_side.loop import EXACT, Loop
 from overreach.robots.base import Robot
 from overreach.robots.load import check_robot_name, load_robot
@@ -76,6 +76,7 @@ def run_robot(
         else:
             device = load_robot(robot, clock.now())
             left.callback(_stop, device, clock)  # whatever comes in between, also before the first tick
+        eager()
         link = RobotEnd(endpoint, name or check_name(device.model.name))
         left.callback(link.close)
         loop = Loop(device, link, clock, rate, law, max_delay)
