@@ -326,11 +326,25 @@ def test_joints_stay_within_their_limits(reached: Reached) -> None:
         for joint, q, dq in zip(joints, state.q, state.dq, strict=True):
             past = max(past, q - joint.upper, joint.lower - q)
             fastest = max(fastest, abs(dq) / joint.rate_max)
+    turns = 0.0
+    for _ in range(reached.times(100)):
+        angle = rng.uniform(-math.pi, math.pi)
+        push = Twist(0.4 * math.cos(angle), 0.4 * math.sin(angle))
+        still = Bare(rng.uniform(1.0, 1e5))
+        signs: list[list[float]] = [[], []]
+        for k in range(1600):
+            still.tick(Command(ME, k + 1, 1, True, push, Frame.WORLD, None, still.now))
+            for sign, dq in zip(signs, still.rates[2:], strict=True):
+                if k > 200 and abs(dq) > 1e-6 and (not sign or dq * sign[-1] < 0.0):
+                    sign.append(dq)
+        turns = max(turns, *[(len(sign) - 1) / 7.0 for sign in signs])
+    assert turns < 2.0
     assert past <= 1e-3
     assert fastest <= 1.0 + 1e-9
     reached.say(
         "joint limit, singularity, out of reach",
-        f"{ticks:,} ticks: overshoot {max(0.0, past):.1g} rad, joint speed {fastest:.3f} of its limit at most",
+        f"{ticks:,} ticks: overshoot {max(0.0, past):.1g} rad, joint speed {fastest:.3f} of its limit, "
+        f"{max(0.0, turns):.1f} sign changes of a joint a second, pushed one way for 8 s, at most",
     )
 
 

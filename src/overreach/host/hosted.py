@@ -64,6 +64,8 @@ class Hosted:
             if made.model is None:
                 raise SetupError(made.wrong)
             self.model, self.simulated = made.model, made.simulated
+            if not self._wait(lambda _: True):
+                raise SetupError("the robot's host does not say how the robot is")
         except BaseException:
             self.close()
             raise
@@ -151,8 +153,11 @@ class Hosted:
 
     def close(self) -> None:
         """End the host: the robot comes to rest first."""
-        with contextlib.suppress(OSError):
+        if self._door >= 0:
             os.close(self._door)
+            self._door = -1
+            self._asks.close()
+            self._reports.close()
         try:
             self._process.wait(END_S)
         except subprocess.TimeoutExpired:

@@ -71,7 +71,12 @@ def run_robot(
     with contextlib.ExitStack() as left:
         device: Robot
         if hosted:
-            device = Hosted(robot, 1.0 / rate, clock, lambda: ended)
+            try:
+                device = Hosted(robot, 1.0 / rate, clock, lambda: ended)
+            except SetupError:
+                if ended:  # while the robot was made
+                    return
+                raise
             left.callback(device.close)
         else:
             device = load_robot(robot, clock.now())
