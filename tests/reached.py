@@ -80,7 +80,8 @@ class Reached:
 
     def __init__(self, test: str, full: bool, seed: int) -> None:
         self.full, self.seed = full, seed
-        self._test = test
+        self._test = re.sub(r"\W+", "_", test)
+        self._said = 0
 
     def times(self, promised: int) -> int:
         """Return how often to try what is promised for `promised` times."""
@@ -92,8 +93,9 @@ class Reached:
         print(f"{fault}: {text}")
         if self.full:
             PARTS.mkdir(parents=True, exist_ok=True)
-            name = re.sub(r"\W+", "_", f"{self._test}_{text}")[:150]
-            (PARTS / f"{name}.json").write_text(json.dumps({"fault": fault, "text": text, "seed": self.seed}))
+            self._said += 1
+            said = {"fault": fault, "text": text, "seed": self.seed}
+            (PARTS / f"{self._test}_{self._said}.json").write_text(json.dumps(said))
 
 
 def gathered() -> dict[str, Any]:

@@ -64,7 +64,7 @@ class Drive(NamedTuple):
 
 def apart(observer: Observer, driver: Driver, seconds: float) -> Drive:
     """Drive, and press again where a starved operator's commands were too far apart."""
-    observer.states.clear()
+    begun = observer.now.t
     end, moved, looks = time.monotonic() + seconds, 0, 0
     while time.monotonic() < end:
         driver.drive(0.1)
@@ -73,7 +73,7 @@ def apart(observer: Observer, driver: Driver, seconds: float) -> Drive:
         if observer.now.verdict in ("regrip", "lost"):
             driver.send(held=False)
             driver.grip += 1
-    told = [(s.apart_p99 / 1e3, s.apart_max / 1e3) for s in list(observer.states)]
+    told = [(s.apart_p99 / 1e3, s.apart_max / 1e3) for s in list(observer.states) if s.t > begun]
     each = [one for one, before in zip(told[1:], told, strict=False) if one != before]
     return Drive([p99 for p99, _ in each], [most for _, most in each], moved / looks)
 
