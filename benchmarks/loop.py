@@ -2,37 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-import multiprocessing
 import os
 from collections.abc import Iterator
 
 from benchmarks.measure import Promise, promise
 from overreach.link.endpoint import free_port
 from tests.browser.chromium import chromium
-from tests.processes import Observer, half, robot
+from tests.processes import Observer, half, hogs, robot
 
 SECONDS = 20
-
-
-def hog() -> None:
-    """Use all of a core."""
-    while True:
-        pass
-
-
-@contextlib.contextmanager
-def hogs(many: int) -> Iterator[None]:
-    """Keep `many` cores busy."""
-    running = [multiprocessing.get_context("spawn").Process(target=hog, daemon=True) for _ in range(many)]
-    for process in running:
-        process.start()
-    try:
-        yield
-    finally:
-        for process in running:
-            process.kill()
-            process.join()
 
 
 def seconds_of(observer: Observer, page: object) -> list[tuple[float, float, float]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
 import re
 import signal
 import socket
@@ -144,6 +145,49 @@ class Driver:
         while time.monotonic() < end:
             self.send(v_c, w_c)
             time.sleep(1 / 60)
+
+
+def drive_until(driver: Driver, observer: Observer, verdict: str) -> None:
+    """Push forward until the robot side says `verdict`."""
+    end = time.monotonic() + GENEROUS_S
+    while observer.now.verdict != verdict:
+        assert time.monotonic() < end, f"{observer.now.verdict}: {observer.now.sentence}"
+        driver.send()
+        time.sleep(1 / 60)
+
+
+def to_full_speed(driver: Driver, observer: Observer) -> None:
+    """Arm, and push forward until the base drives at full speed."""
+    driver.arm()
+    end = time.monotonic() + GENEROUS_S
+    while observer.now.base.v_x <= 0.39:
+        assert time.monotonic() < end, f"{observer.now.verdict}: {observer.now.sentence}"
+        driver.drive(0.1)
+
+
+def hog() -> None:
+    """Use all of a core."""
+    while True:
+        pass
+
+
+@contextmanager
+def hogs(many: int) -> Iterator[None]:
+    """Keep `many` cores busy."""
+    running = [multiprocessing.get_context("spawn").Process(target=hog, daemon=True) for _ in range(many)]
+    for process in running:
+        process.start()
+    try:
+        yield
+    finally:
+        for process in running:
+            process.kill()
+            process.join()
+
+
+def port_of(endpoint: str) -> int:
+    """Return the port of an endpoint."""
+    return int(endpoint.rsplit(":", 1)[1])
 
 
 def port_is_free(port: int) -> bool:

@@ -24,10 +24,10 @@ ROOT = Path(overreach.__file__).parent
 ARROWS: dict[str, set[str]] = {
     "errors": set(),
     "verdicts": set(),
-    "requests": set(),
     "clock": set(),
     "priority": set(),
     "types": {"verdicts"},
+    "requests": {"types"},
     "extras": {"errors"},
     "parameters": {"errors", "types"},
     "gate": {"errors", "verdicts", "types"},

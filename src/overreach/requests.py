@@ -2,31 +2,31 @@
 
 from __future__ import annotations
 
-import msgspec
+from overreach.types import Record
 
 
-class StopRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="stop"):
+class StopRequest(Record, frozen=True, tag="stop"):
     """Latch the stop."""
 
 
-class ResetRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="reset"):
+class ResetRequest(Record, frozen=True, tag="reset"):
     """Release the latches of stop and fault; moves nothing, arms nothing."""
 
 
-class ArmRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="arm"):
+class ArmRequest(Record, frozen=True, tag="arm"):
     """Arm for this operator; its presses of the dead-man up to number `grip` do not count."""
 
     operator: int
     grip: int = 0
 
 
-class DisarmRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="disarm"):
+class DisarmRequest(Record, frozen=True, tag="disarm"):
     """Disarm, if this operator armed."""
 
     operator: int
 
 
-class RestartRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="restart"):
+class RestartRequest(Record, frozen=True, tag="restart"):
     """Put a simulated robot back to its start; refused unless it is disarmed and at rest."""
 
 

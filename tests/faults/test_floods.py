@@ -18,17 +18,13 @@ import pytest
 from overreach.link.messages import Accepted
 from overreach.link.operator_end import OperatorEnd
 from overreach.requests import ResetRequest, StopRequest
-from tests.processes import GENEROUS_S, Driver, Observer, robot, until
+from tests.processes import GENEROUS_S, Driver, Observer, port_of, robot, until
 from tests.reached import Reached
 
 pytestmark = pytest.mark.real_time
 
 NOISE_S = 0.1
 """A busy machine may be this late [s]."""
-
-
-def port_of(endpoint: str) -> int:
-    return int(endpoint.rsplit(":", 1)[1])
 
 
 def stopped(observer: Observer) -> float:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import subprocess
-import sys
 import time
 from bisect import bisect
 from itertools import pairwise
@@ -14,13 +11,12 @@ from pathlib import Path
 import pytest
 
 from tests.logged import Log
-from tests.processes import Driver, robot, until
+from tests.processes import Driver, hogs, robot, until
 from tests.reached import Reached
 
 pytestmark = pytest.mark.timed
 
 PERIOD_S = 0.005
-HOG = "import os\nwhile os.getppid() == {parent}: pass"
 EARLY_S = 0.0002
 """A write comes so much before its usual time in the period at most."""
 
@@ -29,24 +25,18 @@ def test_two_busy_cores(tmp_path: Path, reached: Reached) -> None:
     """Driven beside two hogs: the host ramps only past two periods without a write, and no period has two writes."""
     log = Log(tmp_path)
     seconds = reached.times(600)
-    hogs = [subprocess.Popen([sys.executable, "-c", HOG.format(parent=os.getpid())]) for _ in range(2)]
-    try:
-        with robot("logged", env=log.env) as (_, _, observer):
-            driver = Driver(observer.link)
-            driver.arm()
-            end = time.monotonic() + seconds
-            k = 0
-            while time.monotonic() < end:
-                # Round and round, so that the log has both directions.
-                driver.drive(0.5, 0.4 if k % 2 else -0.4)
-                k += 1
-            overruns = observer.now.overruns
-            driver.send(held=False)
-            until(lambda: observer.speed() == 0.0, what="rest")
-    finally:
-        for hog in hogs:
-            hog.kill()
-            hog.wait()
+    with hogs(2), robot("logged", env=log.env) as (_, _, observer):
+        driver = Driver(observer.link)
+        driver.arm()
+        end = time.monotonic() + seconds
+        k = 0
+        while time.monotonic() < end:
+            # Round and round, so that the log has both directions.
+            driver.drive(0.5, 0.4 if k % 2 else -0.4)
+            k += 1
+        overruns = observer.now.overruns
+        driver.send(held=False)
+        until(lambda: observer.speed() == 0.0, what="rest")
     entries = log.entries()
     own = [entry for entry in entries if entry.due == entry.now + PERIOD_S]  # as the host says of what it writes itself
     loops = [entry for entry in entries if entry.due != entry.now + PERIOD_S]

@@ -13,7 +13,18 @@ import pytest
 from overreach.link.messages import Accepted, Choice, ConfigureRequest, Refused, State
 from overreach.requests import ArmRequest, ResetRequest
 from tests.plugin import install
-from tests.processes import Driver, Half, Observer, half, port_is_free, robot, until
+from tests.processes import (
+    Driver,
+    Half,
+    Observer,
+    drive_until,
+    half,
+    port_is_free,
+    port_of,
+    robot,
+    to_full_speed,
+    until,
+)
 from tests.reached import Reached
 
 pytestmark = pytest.mark.real_time
@@ -35,15 +46,6 @@ def bounded(states: list[State]) -> None:
 def use(observer: Observer, law: str) -> None:
     settings = msgspec.structs.replace(observer.welcome.settings, law=Choice(law))
     assert observer.link.request(ConfigureRequest(settings)) == Accepted()
-
-
-def drive_until(driver: Driver, observer: Observer, verdict: str) -> None:
-    """Push forward until the robot side says `verdict`."""
-    end = time.monotonic() + 20.0
-    while observer.now.verdict != verdict:
-        assert time.monotonic() < end, f"{observer.now.verdict}: {observer.now.sentence}"
-        driver.send()
-        time.sleep(1 / 60)
 
 
 @pytest.mark.parametrize(
@@ -80,7 +82,7 @@ def test_a_bad_law_while_driving(law: str, says: str, tmp_path: Path, reached: R
         assert observer.speed() > 0.3
         driver.send(held=False)
         assert running.end() == 0
-        assert port_is_free(int(endpoint.rsplit(":", 1)[1]))
+        assert port_is_free(port_of(endpoint))
         reached.say(
             "plug-in raises, hangs, returns nonsense", f"law {law}: FAULT, a ramp, and on after Reset; 0 escapes"
         )
@@ -88,9 +90,7 @@ def test_a_bad_law_while_driving(law: str, says: str, tmp_path: Path, reached: R
 
 def coming_to_rest(observer: Observer, running: Half, how: signal.Signals, code: int) -> list[State]:
     """Send a signal while the robot drives; return the states from then on."""
-    driver = Driver(observer.link)
-    driver.arm()
-    until(lambda: (driver.drive(0.1), observer.now.base.v_x > 0.39)[1], what="full speed")  # type: ignore[func-returns-value]
+    to_full_speed(Driver(observer.link), observer)
     since = observer.now.t
     assert running.end(how) == code
     until(lambda: observer.speed() == 0.0, what="standstill")
@@ -108,7 +108,7 @@ def test_every_ordered_end_is_a_ramp(how: signal.Signals, reached: Reached) -> N
         assert ramp[-1].base.v_x == 0.0
         assert ramp[-1].sentence == "The robot side was told to end: the robot comes to rest."
         bounded(states)
-        assert port_is_free(int(endpoint.rsplit(":", 1)[1]))
+        assert port_is_free(port_of(endpoint))
         steepest = max(before.base.v_x - after.base.v_x for before, after in pairwise(ramp))
         reached.say(
             "INT, TERM, HUP, exception", f"{how.name}: {len(ramp)} ticks to zero, {steepest:.4f} m/s each at most"
@@ -148,7 +148,7 @@ def test_a_terminal_that_closes_ends_drive_in_order(how: signal.Signals, code: i
             observer.close()
         assert [state.base.v_x for state in states if state.verdict == "ending"][-1] == 0.0
         bounded(states)
-        until(lambda: port_is_free(int(endpoint.rsplit(":", 1)[1])), what="a free port")
+        until(lambda: port_is_free(port_of(endpoint)), what="a free port")
 
 
 def test_nohup_is_respected() -> None:

@@ -10,7 +10,6 @@ import random
 import time
 from collections import Counter
 
-import msgspec
 import pytest
 
 from overreach.arm.chain import Chain
@@ -351,7 +350,7 @@ def test_joints_stay_within_their_limits(reached: Reached) -> None:
 def test_feedback_at_its_worst(reached: Reached) -> None:
     """Any law and any stream of states, in any order and with any acts: bounded, and zero within v/a of a stop."""
     rng, times = random.Random(reached.seed), reached.times(2_000)
-    one = test_worst.test_any_plan_and_any_feedback.hypothesis.inner_test  # type: ignore[attr-defined]
+    one = test_worst.test_any_plan_and_any_feedback.hypothesis.inner_test  # type: ignore[attr-defined]  # hypothesis's own
     for _ in range(times):
         one(rng.randrange(10**9))
     reached.say(
@@ -376,7 +375,7 @@ def test_a_baseline_that_fails(name: str, reached: Reached) -> None:
         return planner(chain, u, base)
 
     pilot = Pilot(planar(), law)
-    pilot.configure(law, planner=plan)  # type: ignore[arg-type]
+    pilot.configure(law, planner=plan)  # type: ignore[arg-type]  # it is to answer nonsense
     bare, grip = Bare(rng.uniform(1.0, 1e5), pilot), 1
     for k in range(ticks):
         bare.tick(said(ME, k + 1, grip, True, 0.3 * math.sin(0.002 * k), 0.2, Frame.WORLD, seen=bare.now))
@@ -388,12 +387,3 @@ def test_a_baseline_that_fails(name: str, reached: Reached) -> None:
     assert faults > 0.002 * ticks
     told = f"{name}: {ticks:,} ticks, {faults} failures: a ramp each, 0 exceptions left the pilot"
     reached.say("baseline's solver fails", told)
-
-
-def test_a_state_is_not_changed_by_being_looked_at() -> None:
-    """The records of a tick are what they were: nothing in them can be set."""
-    bare = Bare(9.0)
-    state = bare.robot.read(bare.now)
-    with pytest.raises(AttributeError):
-        state.t = 1.0  # type: ignore[misc]
-    assert msgspec.structs.replace(state, t=1.0).t == 1.0

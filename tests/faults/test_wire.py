@@ -14,7 +14,7 @@ from overreach.link.messages import Accepted
 from overreach.link.operator_end import OperatorEnd
 from overreach.requests import ArmRequest, StopRequest
 from tests.narrow import Narrow, narrow
-from tests.processes import GENEROUS_S, Driver, Observer, robot, until
+from tests.processes import GENEROUS_S, Driver, Observer, port_of, robot, until
 from tests.reached import Reached
 
 pytestmark = pytest.mark.timed
@@ -24,10 +24,6 @@ LET_GO_S = 0.45
 NOISE_S = 0.1
 """A busy machine may be this late [s]."""
 STICKS_HZ = 60.0
-
-
-def port_of(endpoint: str) -> int:
-    return int(endpoint.rsplit(":", 1)[1])
 
 
 class Pushing:

@@ -10,7 +10,7 @@ from typing import Annotated
 import msgspec
 
 from overreach.link.messages import Scene, Settings, State, Welcome
-from overreach.types import Frame, Twist
+from overreach.types import Frame, Record, Twist
 
 LONGEST = 4096
 """Longest message [characters] that is taken from a page."""
@@ -20,7 +20,7 @@ Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 """A number that counts up, as exact in JavaScript as here."""
 
 
-class CommandFromPage(msgspec.Struct, frozen=True, tag="command", forbid_unknown_fields=True):
+class CommandFromPage(Record, frozen=True, tag="command"):
     """See `overreach.types.Command`. seq: counts commands and beats; shown: number of the newest picture that came."""
 
     seq: Count
@@ -33,7 +33,7 @@ class CommandFromPage(msgspec.Struct, frozen=True, tag="command", forbid_unknown
     shown: Count = 0
 
 
-class BeatFromPage(msgspec.Struct, frozen=True, tag="beat", forbid_unknown_fields=True):
+class BeatFromPage(Record, frozen=True, tag="beat"):
     """Nobody holds on, and an answer is wanted: the page measures how late the link is."""
 
     seq: Count
@@ -41,13 +41,13 @@ class BeatFromPage(msgspec.Struct, frozen=True, tag="beat", forbid_unknown_field
     shown: Count = 0
 
 
-class ShownFromPage(msgspec.Struct, frozen=True, tag="shown", forbid_unknown_fields=True):
+class ShownFromPage(Record, frozen=True, tag="shown"):
     """Number n of the newest picture that has come."""
 
     n: Count
 
 
-class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=True):
+class AskFromPage(Record, frozen=True, tag="ask"):
     """One of the buttons: `what` is stop, reset, arm, disarm, restart, or frame NAME; the answer has the same `id`."""
 
     id: int
@@ -57,7 +57,7 @@ class AskFromPage(msgspec.Struct, frozen=True, tag="ask", forbid_unknown_fields=
 FromPage = CommandFromPage | BeatFromPage | ShownFromPage | AskFromPage
 
 
-class Greeting(msgspec.Struct, frozen=True, tag="welcome", forbid_unknown_fields=True):
+class Greeting(Record, frozen=True, tag="welcome"):
     """To a page, first and when the robot side is another: its operator number, the robot, its settings, its look."""
 
     operator: int
@@ -66,7 +66,7 @@ class Greeting(msgspec.Struct, frozen=True, tag="welcome", forbid_unknown_fields
     scene: Scene
 
 
-class HeardToPage(msgspec.Struct, frozen=True, tag="heard", forbid_unknown_fields=True):
+class HeardToPage(Record, frozen=True, tag="heard"):
     """Everything up to number `seq` was heard. Goes ahead of pictures.
 
     t [s]: time of the robot's newest state, 0 before the first; ago [s]: how long ago it came to the cockpit.
@@ -77,14 +77,14 @@ class HeardToPage(msgspec.Struct, frozen=True, tag="heard", forbid_unknown_field
     ago: float
 
 
-class StateToPage(msgspec.Struct, frozen=True, tag="state", forbid_unknown_fields=True):
+class StateToPage(Record, frozen=True, tag="state"):
     """A picture, by its number n: a state of the robot."""
 
     n: int
     state: State
 
 
-class AnswerToPage(msgspec.Struct, frozen=True, tag="answer", forbid_unknown_fields=True):
+class AnswerToPage(Record, frozen=True, tag="answer"):
     """Whether the request was carried out and, if not, why."""
 
     id: int
@@ -92,7 +92,7 @@ class AnswerToPage(msgspec.Struct, frozen=True, tag="answer", forbid_unknown_fie
     reason: str
 
 
-class SettingsToPage(msgspec.Struct, frozen=True, tag="settings", forbid_unknown_fields=True):
+class SettingsToPage(Record, frozen=True, tag="settings"):
     """The changed settings, and how to draw them."""
 
     settings: Settings

@@ -19,7 +19,7 @@ from overreach.host.serve import Host
 from overreach.priority import HOST, real_time
 from overreach.robots.load import load_robot
 
-END_S = 1.5
+END_S = 1.2
 """Without a loop the host ends after this long [s], though the robot's driver hangs."""
 LOOK_S = 0.1
 

@@ -20,7 +20,7 @@ from overreach.gate.limits import Limits
 from overreach.model.workspace import Workspace
 from overreach.parameters import Parameter
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
-from overreach.types import BaseTwist, Command, Frame, Pose, Twist
+from overreach.types import BaseTwist, Command, Frame, Pose, Record, Twist
 
 PROTOCOL = 4
 """Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
@@ -45,18 +45,14 @@ def check_name(name: str) -> str:
     return name
 
 
-class Message(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of the messages: what has a field that it should not have is refused."""
-
-
-class Choice(Message, frozen=True):
+class Choice(Record, frozen=True):
     """A plug by its name, with the parameters that are set; the others keep their defaults."""
 
     name: str
     parameters: dict[str, float | str] = {}
 
 
-class Settings(Message, frozen=True):
+class Settings(Record, frozen=True):
     """What an operator may change while the robot runs.
 
     law: a law or whole body; blend: for the laws that take one; frame: in which the pages command; workspace: where
@@ -70,7 +66,7 @@ class Settings(Message, frozen=True):
     speed_scale: float = 1.0
 
 
-class Plug(Message, frozen=True):
+class Plug(Record, frozen=True):
     """A law or blend to choose: its summary, its parameters, and whether it takes a blend."""
 
     summary: str
@@ -78,7 +74,7 @@ class Plug(Message, frozen=True):
     blends: bool = False
 
 
-class Scene(Message, frozen=True):
+class Scene(Record, frozen=True):
     """What is drawn around the base: closed lines through (x, y) [m] in the base frame.
 
     footprint: length and width of the base [m]; workspace: where the arm works alone; bands: where base and arm blend.
@@ -89,7 +85,7 @@ class Scene(Message, frozen=True):
     bands: tuple[tuple[tuple[float, float], ...], ...]
 
 
-class ConfigureRequest(Message, frozen=True, tag="configure"):
+class ConfigureRequest(Record, frozen=True, tag="configure"):
     """Use these settings, all or none."""
 
     settings: Settings
@@ -98,24 +94,24 @@ class ConfigureRequest(Message, frozen=True, tag="configure"):
 AnyRequest = StopRequest | ResetRequest | ArmRequest | DisarmRequest | RestartRequest | ConfigureRequest
 
 
-class Accepted(Message, frozen=True, tag="accepted"):
+class Accepted(Record, frozen=True, tag="accepted"):
     """The request was carried out."""
 
 
-class Refused(Message, frozen=True, tag="refused"):
+class Refused(Record, frozen=True, tag="refused"):
     """The request was not carried out, and why, in a sentence for the operator."""
 
     reason: str
 
 
-class Hello(Message, frozen=True):
+class Hello(Record, frozen=True):
     """The operator side's first message."""
 
     protocol: int
     version: str
 
 
-class Welcome(Message, frozen=True, tag="welcome"):
+class Welcome(Record, frozen=True, tag="welcome"):
     """The robot side's answer to a hello: what it is.
 
     name: in the network; model: which robot; rate [Hz]; limits: of the command, where a stick is at its end; reach: of
@@ -147,7 +143,7 @@ class Welcome(Message, frozen=True, tag="welcome"):
 Answer = Accepted | Refused | Welcome
 
 
-class State(Message, frozen=True, gc=False):
+class State(Record, frozen=True):
     """What the robot side tells, at least 50 times a second.
 
     t [s]: on the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq

@@ -8,7 +8,7 @@ const EDGE = 0.005; // a share nearer to 0 or 1 than this is called arm or base
 
 const $ = (id) => document.getElementById(id);
 const signed = (value, digits = 2) => (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits).replace("-", "−");
-const brief = (us) => (us / 1000).toFixed(2);
+const inMs = (us) => (us / 1000).toFixed(2);
 const put = (element, text) => {
   if (element.textContent !== text) element.textContent = text;
 };
@@ -74,7 +74,7 @@ export class Panel {
     put($("r-speed"), `${Math.hypot(...s.velocity).toFixed(2)} m/s`);
     put($("r-refused"), `${s.refused}`);
     put($("r-age"), s.operator && s.heard ? `${(s.age * 1000).toFixed(0)} of ${this.maxDelay} ms` : `at most ${this.maxDelay} ms`);
-    put($("r-late"), s.apart_p99 ? `${brief(s.late_p99)}, ${brief(s.apart_p99)} ms` : "–");
+    put($("r-late"), s.apart_p99 ? `${inMs(s.late_p99)}, ${inMs(s.apart_p99)} ms` : "–");
   }
 
   // A message that the next state must not overwrite.
