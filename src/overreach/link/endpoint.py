@@ -70,6 +70,7 @@ def open_session(listen: str | None = None, connect: str | None = None, seldom: 
         "transport/unicast/accept_pending": CONNECTIONS,
         "transport/unicast/max_sessions": CONNECTIONS,
         "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 0,
+        "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 0,
     }
     if listen:
         settings["transport/link/tx/queue/congestion_control/block/wait_before_close"] = WAIT_US
