@@ -94,17 +94,21 @@ class Reached:
         if self.full:
             PARTS.mkdir(parents=True, exist_ok=True)
             self._said += 1
-            said = {"fault": fault, "text": text, "seed": self.seed}
+            said = {"fault": fault, "text": text, "seed": self.seed, "commit": commit()}
             (PARTS / f"{self._test}_{self._said}.json").write_text(json.dumps(said))
+
+
+def commit() -> str:
+    """Return the commit that is checked out."""
+    git = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
+    return subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def gathered() -> dict[str, Any]:
     """Return what a full run said, by fault, with where and when it was said."""
     said = [json.loads(path.read_text()) for path in sorted(PARTS.glob("*.json"))]
-    git = ["git", "-C", str(ROOT)]
-    commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
     return {
-        "commit": commit,
+        "commits": sorted({one["commit"] for one in said}),
         "seeds": sorted({one["seed"] for one in said}),
         "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
         "reached": {fault: sorted(one["text"] for one in said if one["fault"] == fault) for fault in ROWS},
@@ -114,8 +118,8 @@ def gathered() -> dict[str, Any]:
 def table(found: dict[str, Any]) -> str:
     """Return the table of SAFETY.md for the contents of FILE."""
     lines = [
-        f"Reached by `make faults` at commit {found['commit'][:10]}, seed {', '.join(map(str, found['seeds']))}, on "
-        f"{found['machine']}; in full in build/faults.json.",
+        f"Reached by `make faults` at {', '.join(one[:10] for one in found['commits'])}, seed "
+        f"{', '.join(map(str, found['seeds']))}, on {found['machine']}; in full in build/faults.json.",
         "",
         "| fault | reaction, and the number promised | reached |",
         "|---|---|---|",
