@@ -51,17 +51,21 @@ def flood(endpoint: str, what: str, seconds: float, rate: float = 3000.0, many: 
 
 
 class Drive(NamedTuple):
-    """Second by second, p99 and maximum of the time between writes beyond a period [ms]; the part in which it moved."""
+    """Second by second, p99 and maximum of the time between writes beyond a period [ms]; the part in which it moved.
+
+    paused: how often the loop was held up so long that the robot came to rest by itself, and was armed again.
+    """
 
     p99: list[float]
     most: list[float]
     moved: float
+    paused: int
 
 
 def apart(observer: Observer, driver: Driver, seconds: float) -> Drive:
-    """Drive, and press again where a starved operator's commands were too far apart."""
+    """Drive, and press again where a starved operator's commands were too far apart, or the robot had come to rest."""
     begun = observer.now.t
-    end, moved, looks = time.monotonic() + seconds, 0, 0
+    end, moved, looks, paused = time.monotonic() + seconds, 0, 0, 0
     while time.monotonic() < end:
         driver.drive(0.1)
         looks += 1
@@ -69,9 +73,13 @@ def apart(observer: Observer, driver: Driver, seconds: float) -> Drive:
         if observer.now.verdict in ("regrip", "lost"):
             driver.send(held=False)
             driver.grip += 1
+        elif observer.now.verdict == "paused":
+            paused += 1
+            driver.send(held=False)
+            driver.arm()
     told = [(s.apart_p99 / 1e3, s.apart_max / 1e3) for s in list(observer.states) if s.t > begun]
     each = [one for one, before in zip(told[1:], told, strict=False) if one != before]
-    return Drive([p99 for p99, _ in each], [most for _, most in each], moved / looks)
+    return Drive([p99 for p99, _ in each], [most for _, most in each], moved / looks, paused)
 
 
 def again(driver: Driver) -> None:
@@ -96,7 +104,7 @@ def test_floods(what: str, reached: Reached) -> None:
             driver.drive(1.0)
             bare = [sys.executable, "-m", "tests.faults.beside", str(seconds)]
             with subprocess.Popen(bare, stdout=subprocess.PIPE, text=True) as beside:
-                p99, most, moved = apart(observer, driver, seconds)
+                p99, most, moved, paused = apart(observer, driver, seconds)
                 machine = beside.communicate()[0].strip()
             assert moved > 0.5 or what == "stop"  # nobody's messages crowd out those of who drives
             took = []
@@ -117,7 +125,7 @@ def test_floods(what: str, reached: Reached) -> None:
             "floods of requests, connections, frames",
             f"4 x 3,000 {what} a second: between writes {statistics.median(p99):.2f} ms more than a period (p99), "
             f"{max(most):.1f} ms at most, within 2 ms in {sooner} of {len(most)} s (a bare loop beside it: "
-            f"{machine} ms late at most; without a flood, {max(alone):.1f} ms); "
+            f"{machine} ms late at most; without a flood, {max(alone):.1f} ms), {paused} pauses; "
             f"Reset answered in {max(took) * 1e3:.0f} ms, Stop in force after {max(0.0, stop) * 1e3:.0f} ms",
         )
 
@@ -194,7 +202,7 @@ def test_who_is_not_reading_holds_nobody_up() -> None:
             driver.drive(1.5)
             os.kill(peer.pid, 19)  # SIGSTOP
             try:
-                p99, _, moved = apart(observer, driver, 4.0)
+                p99, _, moved, _ = apart(observer, driver, 4.0)
                 assert statistics.median(p99) < 2.0
                 assert moved > 0.5
                 assert observer.link.request(StopRequest()) == Accepted()
