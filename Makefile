@@ -2,6 +2,7 @@
 # make reproduce: the paper's figures and the comparison, as report/report.html. make bench: what things cost.
 # make faults: every fault of SAFETY.md as often as is promised, and its table anew (45 minutes). make soak: 5 minutes,
 # or SOAK=1h, of driving while memory is looked at.
+# make robots-check: 1,000 random streams for each robot, mode and seed, into build/robots.json (an hour).
 # make mutate: whether a test fails for every small change of the gate (15 minutes; not part of make test).
 PYTHON ?= python3
 VENV ?= .venv
@@ -9,7 +10,7 @@ BIN := $(VENV)/bin
 comma := ,
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: drive reproduce test venv lint types bench faults soak mutate browser headline clean
+.PHONY: drive reproduce test venv lint types bench faults soak robots-check mutate browser headline clean
 
 drive: venv
 	@$(BIN)/overreach drive || [ $$? -eq 130 ]  # Ctrl-C is how it ends
@@ -47,6 +48,11 @@ faults: $(VENV)/.ready-dev browser
 soak: $(VENV)/.ready-dev browser
 	$(BIN)/python -m tests.soak $(SOAK) build/soak.json
 
+STREAMS ?= 1000
+
+robots-check: $(VENV)/.ready-dev
+	$(BIN)/python -m tests.robots $(STREAMS) build/robots.json
+
 mutate: $(VENV)/.ready-mutate
 	$(BIN)/python -m tests.mutation
 
@@ -65,7 +71,7 @@ $(PIP) install -c constraints.txt -e '$(1)'
 endef
 
 $(VENV)/.ready: pyproject.toml constraints.txt
-	$(call install,.,.ready)
+	$(call install,.[fast],.ready)
 
 $(VENV)/.ready-all: pyproject.toml constraints.txt
 	$(call install,.[all],.ready .ready-all)

@@ -43,6 +43,18 @@ def reached(request: pytest.FixtureRequest) -> Reached:
 
 
 @pytest.fixture(scope="session")
+def menagerie() -> Path:
+    """Where the models of real robots are: without them their tests are skipped, but not where it counts."""
+    folder = os.environ.get("MENAGERIE_ROOT", "")
+    if folder:
+        return Path(folder)
+    why = "MENAGERIE_ROOT is not set: no real robot's model is tested. Set it to a copy of the MuJoCo menagerie."
+    if os.environ.get("CI") == "true":
+        pytest.fail(why)
+    pytest.skip(why)
+
+
+@pytest.fixture(scope="session")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What one whole run of `reproduce` wrote, with the timing cut short: many tests look at it."""
     from overreach.reproduce import cost, run

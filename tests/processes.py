@@ -34,10 +34,25 @@ def until(true: Callable[[], object], seconds: float = GENEROUS_S, what: str = "
         time.sleep(0.01)
 
 
+def _names_a_robot(arguments: Sequence[str]) -> bool:
+    """Say whether there is a word that is neither an option nor its value."""
+    value = False
+    for one in arguments:
+        if one.startswith("--"):
+            value = not one.startswith("--no-") and "=" not in one
+        elif not value:
+            return True
+        else:
+            value = False
+    return False
+
+
 class Half:
-    """One `overreach` process."""
+    """One `overreach` process; its robot is the planar one, if none is named."""
 
     def __init__(self, *arguments: str, env: dict[str, str] | None = None, begin: Sequence[str] = ()) -> None:
+        if arguments[0] in ("drive", "robot") and not _names_a_robot(arguments[1:]):
+            arguments = (arguments[0], "planar", *arguments[1:])
         self.process = subprocess.Popen(
             [*begin, sys.executable, "-m", "overreach", *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, env=env,

@@ -11,6 +11,7 @@ import numpy as np
 from overreach.arm.chain import Moved, Point, Rest
 from overreach.arm.mount import Mount
 from overreach.arm.polar import wrap
+from overreach.gate.limits import Limits
 from overreach.model.base import Base, Start
 from overreach.model.workspace import Workspace
 from overreach.types import Channel, Record
@@ -171,6 +172,8 @@ class SerialRobot(Record, frozen=True):
     workspace: Workspace = Workspace(0.45, 0.85, -0.6, 0.6)
     start: Start = Start(0.65, 0.0)
     gripper: bool = True
+    command: Limits = Limits()
+    bands: tuple[float, float, float] = (0.1, 0.1, 0.1)
 
     def placed(self, mount: Mount, workspace: Workspace) -> SerialRobot:
         return msgspec.structs.replace(self, mount=mount, workspace=workspace)

@@ -28,7 +28,7 @@ def without(missing: tuple[str, ...], *arguments: str) -> subprocess.CompletedPr
 @pytest.mark.parametrize(
     ("missing", "arguments", "extra"),
     [
-        (("qpsolvers", "numpy"), ("simulate", "reach", "--law", "qp"), "qp"),
+        (("qpsolvers",), ("simulate", "reach", "--law", "qp"), "qp"),
         (("qpsolvers",), ("simulate", "reach", "--law", "holistic"), "qp"),
         (("matplotlib",), ("reproduce", "--out", "OUT"), "figures,qp"),
         (("qpsolvers",), ("reproduce", "--out", "OUT"), "figures,qp"),
@@ -48,11 +48,18 @@ def test_a_missing_library_is_one_line_with_what_to_do(
 
 
 @pytest.mark.parametrize(
-    "arguments", [("simulate", "reach"), ("laws",), ("doctor",), ("simulate", "reach", "--law", "weighted")]
+    "arguments",
+    [
+        ("simulate", "reach"),
+        ("laws",),
+        ("doctor",),
+        ("simulate", "reach", "--law", "weighted"),
+        ("simulate", "reach", "--robot", "mobile4"),
+    ],
 )
 def test_driving_needs_no_extra(arguments: tuple[str, ...]) -> None:
-    """Without numpy, numba, matplotlib and every solver the rest works, and the laws are all named."""
-    done = without(("numpy", "numba", "matplotlib", "scipy", "qpsolvers", "daqp", "tqdm"), *arguments)
+    """Without numba, matplotlib, mink and every solver the rest works, and the laws are all named."""
+    done = without(("numba", "matplotlib", "scipy", "qpsolvers", "daqp", "mink", "mujoco_menagerie"), *arguments)
     assert done.returncode == 0, done.stderr
     assert arguments != ("laws",) or "holistic" in done.stdout
 

@@ -23,6 +23,8 @@ from overreach.robot_side.process import run_robot
 ROOT = Path(overreach.__file__).parent
 ARROWS: dict[str, set[str]] = {
     "errors": set(),
+    "compiled": set(),
+    "files": {"errors"},
     "verdicts": set(),
     "clock": set(),
     "priority": set(),
@@ -31,8 +33,8 @@ ARROWS: dict[str, set[str]] = {
     "extras": {"errors"},
     "parameters": {"errors", "types"},
     "gate": {"errors", "verdicts", "types"},
-    "arm": {"errors", "verdicts", "types"},
-    "model": {"errors", "types", "arm"},
+    "arm": {"errors", "verdicts", "compiled", "types"},
+    "model": {"errors", "compiled", "files", "types", "extras", "gate", "arm"},
     "law": {"errors", "verdicts", "types", "parameters", "arm", "model"},
     "fast": {"errors", "arm", "model", "law"},
     "baselines": {"errors", "extras", "types", "parameters", "arm", "model", "law"},
@@ -47,17 +49,23 @@ ARROWS: dict[str, set[str]] = {
         "control", "robots", "host", "link",
     },
     "cockpit": {"errors", "clock", "requests", "types", "parameters", "gate", "plugs", "robots", "link", "robot_side"},
+    "check": {"errors", "files", "requests", "types", "gate", "arm", "model", "law", "plugs", "control", "robots"},
     "run": {
-        "errors", "verdicts", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law", "plugs",
-        "control", "robots",
+        "errors", "files", "verdicts", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law",
+        "plugs", "control", "robots",
     },
     "bench": {
-        "requests", "clock", "types", "extras", "arm", "model", "law", "fast", "baselines", "control", "robots", "run",
+        "errors", "requests", "clock", "types", "extras", "arm", "model", "law", "fast", "baselines", "plugs",
+        "control", "robots", "check", "run",
     },
-    "reproduce": {"errors", "types", "extras", "parameters", "model", "law", "baselines", "plugs", "run", "bench"},
+    "reproduce": {
+        "errors", "files", "types", "extras", "parameters", "model", "law", "baselines", "plugs", "run", "bench",
+    },
+    "lists": {"parameters", "law", "plugs", "robots"},
     "doctor": {"extras"},
     "commands": {
-        "parameters", "law", "plugs", "robots", "link", "robot_side", "cockpit", "run", "bench", "reproduce", "doctor",
+        "files", "parameters", "model", "plugs", "link", "robot_side", "cockpit", "check", "run", "bench", "reproduce",
+        "lists", "doctor",
     },
     "cli": {"errors", "commands"},
     "__main__": {"cli"},

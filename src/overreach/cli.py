@@ -20,6 +20,10 @@ overreach {__version__}: drive a whole mobile manipulator by its hand.
   overreach reproduce --out DIR  the paper's figures, and what it does not show: one page, in a minute
   overreach bench                what a control step costs, beside the quadratic programs
 
+  overreach describe MODEL       a first description of your robot, from its URDF or MJCF
+  overreach workspace ROBOT      measure where its hand can go
+  overreach check ROBOT          drive it by random command streams, and say what came of it
+
   overreach laws                 the laws, blends and command frames there are
   overreach robots               the robots there are
   overreach doctor               what is installed, what is missing, how to get it

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 from tyro.extras import SubcommandApp
-
-if TYPE_CHECKING:
-    from overreach.parameters import Parameters
 
 app = SubcommandApp()
 Repeated = Annotated[tuple[str, ...], tyro.conf.UseAppendAction]
@@ -17,7 +14,8 @@ Repeated = Annotated[tuple[str, ...], tyro.conf.UseAppendAction]
 
 @app.command
 def drive(
-    robot: Annotated[str, tyro.conf.Positional] = "planar",
+    robot: Annotated[str, tyro.conf.Positional] = "mobile7",
+    mode: str = "",
     port: int | None = None,
     host: str = "127.0.0.1",
     allow_host: Repeated = (),
@@ -31,7 +29,8 @@ def drive(
     """Start a simulated robot and the page to drive it with; open a browser where there is one.
 
     Args:
-        robot: Name of the robot (see `overreach robots`).
+        robot: A name (see `overreach robots`), a TOML or a model file.
+        mode: How its hand is held: follow, fixed, level or free.
         port: Port of the page; by default 8420, or a free one where that is taken.
         host: Address the page is served at. Anyone who can reach it can drive the robot.
         allow_host: A further name of this machine, such as robot.local, that the page may be opened by; repeatable.
@@ -43,13 +42,15 @@ def drive(
         max_delay: Commands older than this [s] are not obeyed, 0.1 to 2.
     """
     from overreach.cockpit.drive import run_drive
+    from overreach.plugs import in_mode
 
-    run_drive(robot, host, port, rate, browser, law, set, allow_host, hosted, max_delay)
+    run_drive(in_mode(robot, mode), host, port, rate, browser, law, set, allow_host, hosted, max_delay)
 
 
 @app.command
 def robot(
-    robot: Annotated[str, tyro.conf.Positional] = "planar",
+    robot: Annotated[str, tyro.conf.Positional] = "mobile7",
+    mode: str = "",
     listen: str = "tcp/127.0.0.1:7460",
     rate: float = 200.0,
     name: str = "",
@@ -62,7 +63,8 @@ def robot(
     """Run the robot side: loop, gate, law and robot. A cockpit connects to it.
 
     Args:
-        robot: Name of the robot (see `overreach robots`).
+        robot: A name (see `overreach robots`), a TOML or a model file.
+        mode: How its hand is held: follow, fixed, level or free.
         listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
         rate: Rate of the control loop [Hz], 50 to 1000.
         name: Its name in the network, by default the robot's own; two robots need two names.
@@ -74,9 +76,10 @@ def robot(
     """
     from overreach.link.messages import Choice
     from overreach.parameters import assignments
+    from overreach.plugs import in_mode
     from overreach.robot_side.process import run_robot
 
-    run_robot(robot, listen, rate, parent, name, Choice(law, dict(assignments(set))), hosted, max_delay)
+    run_robot(in_mode(robot, mode), listen, rate, parent, name, Choice(law, dict(assignments(set))), hosted, max_delay)
 
 
 @app.command
@@ -106,6 +109,8 @@ def cockpit(
 @app.command
 def simulate(
     scenario: Annotated[str, tyro.conf.Positional],
+    robot: str = "",
+    mode: str = "",
     law: str = "exact",
     set: tuple[str, ...] = (),
     out: Path | None = None,
@@ -116,6 +121,8 @@ def simulate(
     Args:
         scenario: A built-in scenario (outward, inward, left, right, mixed, aside, aside_back, reach, held, dither,
             dither_pushed) or a TOML file.
+        robot: Robot to run it on: a name (see `overreach robots`) or a file; by default the scenario's own.
+        mode: How its hand is held: follow, fixed, level or free.
         law: Name of the law (see `overreach laws`).
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         out: CSV file to write, one row per step.
@@ -123,8 +130,10 @@ def simulate(
     """
     import msgspec
 
+    from overreach.files import check_writable
     from overreach.parameters import assignments
-    from overreach.run.files import check_writable, write_csv
+    from overreach.plugs import in_mode
+    from overreach.run.files import write_csv, write_spatial_csv
     from overreach.run.metrics import cost_per_step
     from overreach.run.scenario import load_scenario
     from overreach.run.simulate import law_of
@@ -133,10 +142,12 @@ def simulate(
 
     if out is not None:
         check_writable(out, "--out")
-    loaded = load_scenario(scenario)
+    loaded = load_scenario(scenario, in_mode(robot, mode))
     made = law_of(loaded, law, assignments(set))
     run = run_scenario(loaded, made)
-    if out is not None:
+    if out is not None and run.spatial:
+        write_spatial_csv(out, run.spatial, loaded.model)
+    elif out is not None:
         write_csv(out, run.rows)
     if json:
         print(msgspec.json.encode(run.summary).decode())
@@ -159,42 +170,109 @@ def reproduce(out: Path) -> None:
 
 
 @app.command
-def bench(json: Path | None = None) -> None:
+def bench(robot: str = "", mode: str = "", json: Path | None = None) -> None:
     """Measure the cost of a control step: plain, compiled and batched, next to the quadratic programs.
 
     Args:
+        robot: A robot whose arm moves in space, measured beside mink; by default the planar one, beside its rivals.
+        mode: How its hand is held: follow, fixed, level or free.
         json: File to write the numbers to.
     """
-    from overreach.bench.report import text
-    from overreach.bench.run import measure
-    from overreach.run.files import check_writable, write_json
+    from overreach.bench import report, run, spatial
+    from overreach.files import check_writable, write_json
+    from overreach.plugs import in_mode
 
     if json is not None:
         check_writable(json, "--json")
-    found = measure()
+    found = spatial.measure(in_mode(robot, mode)) if robot else run.measure()
     if json is not None:
         write_json(json, found)
-    print(text(found))
+    print(spatial.text(found) if robot else report.text(found))
+
+
+@app.command
+def workspace(
+    robot: Annotated[str, tyro.conf.Positional],
+    mode: str = "follow",
+    find_home: bool = False,
+    out: Path | None = None,
+    figure: Path | None = None,
+) -> None:
+    """Measure where a robot's hand can go, draw it, and print the table for its description.
+
+    Args:
+        robot: A name (see `overreach robots`) or a TOML file.
+        mode: How the hand is held: follow, fixed, level or free.
+        find_home: Look for home postures first, and measure from the best one.
+        out: TOML file to put the table into; a description that is there keeps the rest.
+        figure: File to draw to, as its suffix says: SVG, PNG or PDF.
+    """
+    from overreach.files import check_writable
+    from overreach.model.measure.command import run_workspace
+
+    for path, option in ((out, "--out"), (figure, "--figure")):
+        if path is not None:
+            check_writable(path, option)
+    run_workspace(robot, mode, find_home, out, figure)
+
+
+@app.command
+def check(
+    robot: Annotated[str, tyro.conf.Positional],
+    mode: str = "follow",
+    streams: int = 200,
+    seed: int = 0,
+    json: Path | None = None,
+    jobs: int = 0,
+) -> None:
+    """Say what was found of a robot and what looks wrong, and drive it by random command streams.
+
+    Args:
+        robot: A name (see `overreach robots`) or a TOML file.
+        mode: How the hand is held: follow, fixed, level or free.
+        streams: How many streams of each kind, smooth ones and stick steps: 20 s each.
+        seed: Of the streams.
+        json: File to write the numbers to.
+        jobs: Processes; by default one a core.
+    """
+    from overreach.check.command import run_check
+    from overreach.files import check_writable
+
+    if json is not None:
+        check_writable(json, "--json")
+    run_check(robot, mode, streams, seed, json, jobs)
+
+
+@app.command
+def describe(model: Annotated[Path, tyro.conf.Positional], out: Path | None = None) -> None:
+    """Print a first description of a robot from its model file, MJCF or URDF: what was found, and what was guessed.
+
+    Args:
+        model: The model file.
+        out: TOML file to write the description to.
+    """
+    from overreach.files import check_writable
+    from overreach.model.mujoco.describe import run_describe
+
+    if out is not None:
+        check_writable(out, "--out")
+    run_describe(model, out)
 
 
 @app.command
 def laws() -> None:
     """List the laws, the blends and the command frames."""
-    from overreach.law.frame import FRAMES
-    from overreach.plugs import BLENDS, blend_plug, law_names, law_plug, names, usable
+    from overreach.lists import laws as lines
 
-    _list_plugs("laws (--law), with their parameters (--set NAME=VALUE)", usable(law_names(), law_plug))
-    _list_plugs("blends", usable(names(BLENDS), blend_plug))
-    _list("command frames", {name: (frame.__doc__ or "").splitlines()[0] for name, frame in FRAMES.items()})
+    print("\n".join(lines()))
 
 
 @app.command
 def robots() -> None:
     """List the robots."""
-    from overreach.plugs import MODELS, summaries
-    from overreach.robots.load import ROBOTS
+    from overreach.lists import robots as lines
 
-    _list("robots", summaries(MODELS, ROBOTS))
+    print("\n".join(lines()))
 
 
 @app.command
@@ -203,23 +281,3 @@ def doctor() -> None:
     from overreach.doctor import report
 
     print(report())
-
-
-def _list(title: str, entries: dict[str, str]) -> None:
-    print(title)
-    for name, line in entries.items():
-        print(f"  {name:<12}{line}")
-
-
-def _list_plugs(title: str, plugs: dict[str, type[Parameters] | str]) -> None:
-    from overreach.parameters import schema, summary
-
-    print(title)
-    for name, plug in plugs.items():
-        if isinstance(plug, str):
-            print(f"  {name:<12}cannot be used: {plug}")
-            continue
-        print(f"  {name:<12}{summary(plug)}")
-        for one in schema(plug):
-            choices = f", one of {', '.join(one.choices)}" if one.choices else ""
-            print(f"{'':<14}{f'{one.name} = {one.shown}':<28}{one.title}{choices}")

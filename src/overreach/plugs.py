@@ -115,18 +115,64 @@ def load_law(name: str, parameters: Mapping[str, Any] | None = None, blend: Blen
     return plug.made(given, "law")
 
 
-def load_model(name: str) -> Model:
-    """Return the description of the robot called `name`; raises UnknownNameError with the valid names."""
+def model_names() -> list[str]:
+    """Return the names of all robots that are described."""
+    from overreach.model.catalogue import described
+
+    return sorted({*names(MODELS), *described()})
+
+
+def load_model(which: str) -> Model:
+    """Return the robot called `which`, or in the file `which`, TOML or model; raises SetupError in one line.
+
+    "#MODE" at its end says how its hand is held, where it can be held in several ways.
+    """
     found = _points(MODELS)
-    if name not in found:
-        raise UnknownNameError("robot", name, found)
-    maker: Callable[[], Model] = found[name].load()
-    return maker()
+    if which in found:
+        maker: Callable[[], Model] = found[which].load()
+        return maker()
+    from overreach.model.catalogue import load
+
+    check_model_name(which)
+    return load(which)
+
+
+def in_mode(which: str, mode: str) -> str:
+    """Return a robot, and the mode in which its hand is held if one is given, as one text."""
+    from overreach.model.catalogue import IN_MODE
+
+    return f"{which}{IN_MODE}{mode}" if mode else which
+
+
+def check_model_name(which: str, others: Sequence[str] = ()) -> None:
+    """Raise UnknownNameError, with the valid names, unless a robot is called so; a file is looked into.
+
+    others: further names that are valid.
+    """
+    from overreach.model.catalogue import IN_MODE, description_of, is_file
+    from overreach.model.description import check_mode
+
+    name, _, mode = which.partition(IN_MODE)
+    if mode:
+        check_mode(mode)
+    if is_file(name):
+        description_of(name)
+        return
+    known = sorted({*model_names(), *others})
+    if name not in known:
+        raise UnknownNameError("robot", name, known, "A file's name must end in .toml, .xml or .urdf.")
+    if mode and name in {*names(MODELS), *others}:
+        raise SetupError(f"the robot {name!r} has no orientation modes")
 
 
 def summaries(*groups: str) -> dict[str, str]:
     """Return name -> the first line of what a plug says of itself, or why it cannot be had."""
     lines = {}
+    if MODELS in groups:
+        from overreach.model.catalogue import described
+        from overreach.model.description import read_description
+
+        lines = {name: read_description(text).summary for name, text in described().items()}
     for name, point in sorted((name, point) for group in groups for name, point in _points(group).items()):
         try:
             lines[name] = summary(point.load())

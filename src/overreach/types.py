@@ -272,7 +272,8 @@ class Decision(Record, frozen=True):
 
     state: the newest believed state of the robot; polar: where the hand is; u: its commanded velocity; split: the
     shares, with the rates as they are written; joints: joint rates [rad/s, m/s]; scale: part of the command that is
-    carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty.
+    carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty; reason:
+    what limits the hand, in words, where there is more to say than the verdict does.
     """
 
     state: RobotState
@@ -283,6 +284,7 @@ class Decision(Record, frozen=True):
     scale: float
     verdict: Verdict
     fault: str = ""
+    reason: str = ""
 
     @property
     def base(self) -> BaseTwist:

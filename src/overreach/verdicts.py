@@ -60,8 +60,10 @@ class Verdict(enum.StrEnum):
     JOINT_LIMIT = "joint_limit", "Scaled", "A joint is near its limit: the whole command is scaled.", "warn"
     OUT_OF_REACH = "out_of_reach", "Out of reach", "The arm is at the end of its reach.", "warn"
     SINGULAR = "singular", "Damped", "The arm is almost straight or folded: it gives way there.", "warn"
+    OFF = "off", "Scaled", "The arm cannot follow exactly here: the whole command is scaled.", "warn"
     BESIDE = "beside", "Scaled", "The hand is beside the base, where driving cannot help it.", "warn"
     SPEED = "speed", "Scaled", "Speed limit: the whole command is scaled.", "warn"
+    HEIGHT = "height", "At its height", "The hand is at the end of its height: it goes on along the ground.", "warn"
     ACCELERATION = "acceleration", "Moving", "Acceleration limit: the whole command is ramped.", "go"
     MOVING = "moving", "Moving", "The hand moves as commanded.", "go"
 

@@ -58,7 +58,8 @@ def test_the_report_says_what_was_measured_and_what_was_missed(monkeypatch: pyte
     assert set(found["batch"]["by_size"]) == {"100", "1000"}
     assert found["machine"]["python"] == describe()["python"]
     assert set(found["qp_parts_us"]) == {"model", "core", "allocation_and_call", "whole"}
-    assert all(value > 0.0 for value in found["qp_parts_us"].values())
+    # What is neither model nor core is their difference from the whole: noise may bring it below 0.
+    assert all(value > 0.0 for name, value in found["qp_parts_us"].items() if name != "allocation_and_call")
     text = report.text(found)
     missed = [one for one in found["targets"] if not one["reached"]]
     assert "batch, control steps per second" in {one["name"] for one in missed}

@@ -7,11 +7,14 @@ moved: (v_m = dl/dt, w_m = dpsi/dt, v_z, w_r, w_t, w_z): what the arm does to it
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from overreach.arm.mount import Mount
-from overreach.types import Channel
+from overreach.types import Channel, Record
 from overreach.verdicts import Verdict
+
+if TYPE_CHECKING:  # an arm in the plane needs no numpy
+    from overreach.arm.spatial.screws import Array
 
 Rest = tuple[float, float, float, float]
 """The hand rates that the arm owes beyond the plane: v_z [m/s], then w_r, w_t, w_z [rad/s] in polar axes."""
@@ -19,6 +22,36 @@ NO_REST: Rest = (0.0, 0.0, 0.0, 0.0)
 Moved = tuple[float, float, float, float, float, float]
 """v_m [m/s], w_m [rad/s], v_z [m/s], w_r, w_t, w_z [rad/s]."""
 Point = tuple[float, float, float]
+
+
+class Asked(Record, frozen=True):
+    """What one step is asked for. Twists of the base: (v_x, v_y, w_z) [m/s, rad/s] along its own axes.
+
+    u: velocity of the hand [m/s]: outward, counter-clockwise, up; w_c [rad/s] and delta [rad]: of the heading that a
+    yaw fixed in the world has, its turning and how far it is past the bearing; plan: what the law wants of the base;
+    slip: how the base deviates from what it is told; was, change: the base twist written last, and how much it can
+    change in this period; joints: their rates written last [rad/s, m/s]; dt: the period [s].
+    """
+
+    u: tuple[float, float, float]
+    w_c: float
+    delta: float
+    plan: tuple[float, float, float]
+    slip: tuple[float, float, float]
+    was: tuple[float, float, float]
+    change: tuple[float, float, float]
+    joints: tuple[float, ...]
+    dt: float
+
+
+class Step(Record, frozen=True):
+    """What one step comes to: rates to write, the part of the command that they carry out, and why it is less."""
+
+    joints: tuple[float, ...]
+    base: tuple[float, float, float]
+    scale: float
+    verdict: Verdict
+    reason: str
 
 
 class Chain(Protocol):
@@ -75,8 +108,33 @@ class Chain(Protocol):
         ...
 
 
+class Governing(Chain, Protocol):
+    """A chain that has joint motions to choose from, and keeps the joints' limits by itself. Its arm `governs`."""
+
+    @property
+    def attitude(self) -> Array:
+        """The hand's attitude in the base frame, (3, 3)."""
+        ...
+
+    @property
+    def heading(self) -> float:
+        """How far [rad] the heading that the hand holds is past its bearing."""
+        ...
+
+    def turning(self, w_c: float, w_b: float, joints: tuple[float, ...]) -> float:
+        """Return how fast [rad/s] the hand is to yaw in the world, for a command w_c and rates of base and joints."""
+        ...
+
+    def step(self, asked: Asked) -> Step:
+        """Return rates that keep every limit of the joints; where they cannot follow, with the base scaled along."""
+        ...
+
+
 class Arm(Protocol):
-    """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`)."""
+    """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`).
+
+    One that has joint motions to choose from says `governs = True`: its chains are then `Governing`.
+    """
 
     @property
     def channels(self) -> tuple[Channel, ...]:

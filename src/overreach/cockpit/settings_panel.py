@@ -50,9 +50,11 @@ class SettingsPanel:
                 "speed_scale", "Speed", 0.05, 1.0, 0.05, "×", shown.speed_scale, self._speed_changed
             )
             least, most = welcome.reach
-            ends = (least + EDGE_M, most - EDGE_M)
-            self._length = self._range("l_min", "l_max", "L  workspace in l", *ends, 0.01, "m")
-            self._bearing = self._range("psi_min", "psi_max", "Ψ  workspace in ψ", -1.5, 1.5, 0.05, "rad")
+            lengths, bearings = (least + EDGE_M, most - EDGE_M), (-1.5, 1.5)
+            if (own := welcome.defaults.workspace).edges:  # as it was measured: it can only be made smaller
+                lengths, bearings = (own.l_min, own.l_max), (own.psi_min, own.psi_max)
+            self._length = self._range("l_min", "l_max", "L  workspace in l", *lengths, 0.01, "m")
+            self._bearing = self._range("psi_min", "psi_max", "Ψ  workspace in ψ", *bearings, 0.05, "rad")
             ui.button("Defaults", on_click=self._defaults).props('flat dense no-caps id="defaults"')
         self.show(relay.settings)
 

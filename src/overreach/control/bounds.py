@@ -17,24 +17,26 @@ class Bounds:
         each = channels(model)
         self._guard = guard
         self._joints: tuple[Channel, ...] = model.arm.channels
-        self._tops = tuple(channel.rate_max for channel in each)
+        self.tops = tuple(channel.rate_max for channel in each)
+        """Greatest rate of each channel."""
         self._changes = tuple(channel.change_max for channel in each)
         self._dt = 0.0
-        self._steps: tuple[float, ...] = ()
+        self.steps: tuple[float, ...] = ()
+        """Greatest change of each in the period that was prepared for."""
         self._free: list[tuple[float, float]] = []
 
     def keep(self, rates: tuple[float, ...], q: tuple[float, ...], dt: float) -> bool:
         """Say whether no limit binds: all `rates` can be written unchanged at joints `q`."""
         if dt != self._dt:
-            self._prepare(dt)
+            self.prepare(dt)
         for angle, (low, high) in zip(q, self._free, strict=True):
             if not low <= angle <= high:
                 return False
-        return within(rates, self._guard.written, self._tops, self._steps)
+        return within(rates, self._guard.written, self.tops, self.steps)
 
-    def _prepare(self, dt: float) -> None:
+    def prepare(self, dt: float) -> None:
         """Precompute, for a period of `dt` [s], the allowed changes of rates and where no limit slows a joint."""
-        self._dt, self._steps = dt, tuple([change * dt for change in self._changes])
+        self._dt, self.steps = dt, tuple([change * dt for change in self._changes])
         self._free = []
         for joint in self._joints:
             # As in `fastest_towards`, braking at half of what the joint can.
@@ -54,18 +56,18 @@ class Bounds:
         v_b, w_b, *joints = rates
         fastest = [high if rate >= 0.0 else -low for rate, (low, high) in zip(joints, free, strict=True)]
         commanded = (v_b, w_b, *[rate - own for rate, own in zip(joints, owed, strict=True)])
-        most = (*self._tops[:2], *fastest)
-        scale, verdict = feasible_scale(commanded, self._guard.written, most, self._steps, (0.0, 0.0, *owed))
+        most = (*self.tops[:2], *fastest)
+        scale, verdict = feasible_scale(commanded, self._guard.written, most, self.steps, (0.0, 0.0, *owed))
         if verdict is Verdict.SPEED and any(
             abs(rate) * scale >= top * 0.999 and top < usual * 0.999
-            for rate, top, usual in zip(joints, fastest, self._tops[2:], strict=True)
+            for rate, top, usual in zip(joints, fastest, self.tops[2:], strict=True)
         ):
             verdict = Verdict.JOINT_LIMIT
         return scale, verdict
 
     def base(self, v_b: float, w_b: float) -> tuple[float, float]:
         """Return the base's rates, clamped to its acceleration limits."""
-        (was_v, was_w, *_), (dv, dw, *_) = self._guard.written, self._steps
+        (was_v, was_w, *_), (dv, dw, *_) = self._guard.written, self.steps
         return clamp_change(v_b, was_v, dv), clamp_change(w_b, was_w, dw)
 
     def joints(self, rates: tuple[float, ...], free: Room) -> tuple[float, ...]:
@@ -74,7 +76,7 @@ class Bounds:
             [
                 clamp_change(max(low, min(high, rate)), was, change)
                 for rate, (low, high), was, change in zip(
-                    rates, free, self._guard.written[2:], self._steps[2:], strict=True
+                    rates, free, self._guard.written[2:], self.steps[2:], strict=True
                 )
             ]
         )

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from math import inf, isfinite
 from operator import add
+from typing import cast
 
 import msgspec
 from msgspec.structs import astuple
 
-from overreach.arm.chain import NO_REST, Chain, Rest
+from overreach.arm.chain import NO_REST, Chain, Governing, Rest
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
+from overreach.control.governed import Governor, slipped
 from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
@@ -43,8 +45,10 @@ class HandController:
         self._arm, self._mount = model.arm, model.mount.three
         self._still = (0.0,) * len(model.arm.channels)
         self._beyond = any(row > 1 for row in model.arm.rows)
+        self._governs = bool(getattr(model.arm, "governs", False))
         self.guard = Guard(all_of_them, ramp_s)
         self._bounds = self._bounded(model)
+        self._governor = Governor(model, self._bounds, self.guard)
         self._feedback = Feedback(all_of_them)
         self.frame, self._angle = law.frame, FRAMES[law.frame]
         self.configure(law)
@@ -63,12 +67,14 @@ class HandController:
             raise SetupError("a law is changed for the same robot: its mount and its joints stay as they are")
         name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
         self.model, self._lags = model, model.base.lag > 0.0
+        self._governor.model = model
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
 
     def restart(self) -> None:
         """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
         start = self.model.start
         self._theta_e: float | None = None
+        self._governor.rest()
         self._now = 0.0
         self._shares = (0.0, 0.0)
         posture = self._arm.posture(start.l, start.psi)
@@ -200,6 +206,10 @@ class HandController:
         is_ = state.motion
         plan = checked(self._plan(chain, u, is_))
         split, own = plan.split, plan.joints
+        if self._governs and own is None:
+            self._shares = split.mu, split.sigma
+            slip = slipped(is_, self._feedback.asked.in_force) if closes else NO_TWIST
+            return self._governor.decide(cast(Governing, chain), state, polar, u, split, slip, dt)
         if own is not None and len(own) != len(self._still):
             raise UnusableError(f"{len(own)} joint rates for {len(self._still)} joints")
         full, verdict = split.scale, split.verdict
@@ -277,6 +287,7 @@ class HandController:
 
     def _at_rest(self, chain: Chain, state: RobotState) -> Decision:
         """Return a decision in which nothing moves."""
+        self._governor.rest()
         rest = Split(*self._shares, 0.0, 0.0, 0.0, 0.0)
         return Decision(state, self._located(chain, state), NO_MOTION, rest, self._still, 1.0, MOVING)
 

@@ -42,7 +42,7 @@ class Pilot:
         limits: Limits | None = None,
         max_delay: float = MAX_DELAY_S,
     ) -> None:
-        self.gate = Gate(limits, obeys=obeys(model), max_delay=max_delay)
+        self.gate = Gate(limits or model.command, obeys=obeys(model), max_delay=max_delay)
         self.controller = self._controller(model, law or Exact())
         self._asked: list[Request | Failed | Configured] = []
 

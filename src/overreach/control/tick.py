@@ -83,5 +83,9 @@ class Tick(Record, frozen=True):
     def sentence(self) -> str:
         """The verdict in words, with its reason where it has one."""
         verdict = self.verdict
-        reason = self.decided.fault if verdict is Verdict.FAULT else self.gated.reason
+        decided = self.decided
+        if verdict is Verdict.FAULT:
+            reason = decided.fault
+        else:
+            reason = decided.reason if verdict is decided.verdict and decided.reason else self.gated.reason
         return f"{reason} {verdict.sentence}".strip()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import tanh as hyperbolic_tangent
-from typing import Annotated
+from typing import Annotated, Self
 
 from overreach.parameters import Parameters, number
 
@@ -72,6 +72,14 @@ class Blend(Parameters, frozen=True):
         """Transition width in bearing [rad]."""
         return self.k_psi
 
+    def fitted(self, width_l: float, width_psi: float) -> Self:
+        """Return the blend with transitions of these widths [m, rad]; one that has none to choose stays as it is."""
+        return self
+
+    def narrowed(self, width_l: float, width_psi: float) -> Self:
+        """Return the blend with its transitions no wider than these [m, rad]."""
+        return self.fitted(min(self.width_l, width_l), min(self.width_psi, width_psi))
+
 
 class Tanh(Blend, frozen=True):
     """The paper's: smooth, but the arm never quite stops.
@@ -109,6 +117,10 @@ class Tanh(Blend, frozen=True):
         """ln(99)/beta [rad]."""
         return LN_99 / self.beta
 
+    def fitted(self, width_l: float, width_psi: float) -> Tanh:
+        """Return the blend that goes from 1 % to 99 % over these widths [m, rad]."""
+        return Tanh(LN_99 / width_l, LN_99 / width_psi)
+
 
 class Smoothstep(Blend, frozen=True):
     """Compact support: the arm ends at a hard limit.
@@ -135,6 +147,10 @@ class Smoothstep(Blend, frozen=True):
     def k_psi(self) -> float:
         """q_psi."""
         return self.q_psi
+
+    def fitted(self, width_l: float, width_psi: float) -> Smoothstep:
+        """Return the blend with bands of these widths [m, rad]."""
+        return Smoothstep(width_l, width_psi)
 
 
 class Step(Blend, frozen=True):

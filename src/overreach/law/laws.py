@@ -44,7 +44,17 @@ class Law(WholeBody, frozen=True):
 def constants(model: Model, blend: Blend) -> tuple[authority.Limits6, authority.Mount3]:
     """Return the numbers that the functions in `authority` take."""
     space = model.workspace
-    return (space.l_min, space.l_max, space.psi_min, space.psi_max, blend.k_l, blend.k_psi), model.mount.three
+    if space.edges:
+        blend = blend.narrowed(*space.widest)
+    return (*space.middles(blend.width_l, blend.width_psi), blend.k_l, blend.k_psi), model.mount.three
+
+
+def usual_blend(blend: Blend, model: Model) -> Blend:
+    """Return a blend with the widths that suit a robot, where its workspace is given by outer edges."""
+    if not model.workspace.edges:
+        return blend
+    width_l, width_psi, _ = model.bands
+    return blend.fitted(width_l, width_psi)
 
 
 def bound(shares: Callable[..., authority.Shares], model: Model, blend: Blend) -> Share:

@@ -22,7 +22,7 @@ from overreach.parameters import Parameter
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
 from overreach.types import BaseTwist, Command, Frame, Pose, Record, Twist
 
-PROTOCOL = 4
+PROTOCOL = 5
 """Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
 
 LONGEST = 4096

@@ -8,6 +8,7 @@ from typing import Protocol
 from overreach.arm.chain import Arm
 from overreach.arm.mount import Mount
 from overreach.errors import WorkspaceError
+from overreach.gate.limits import Limits
 from overreach.model.base import Base, Start
 from overreach.model.workspace import Workspace
 from overreach.types import Channel
@@ -49,6 +50,16 @@ class Model(Protocol):
     @property
     def start(self) -> Start:
         """Where the hand is at the start."""
+        ...
+
+    @property
+    def command(self) -> Limits:
+        """Full deflection of the stick, and how fast the command may change."""
+        ...
+
+    @property
+    def bands(self) -> tuple[float, float, float]:
+        """Usual widths of the bands in which authority passes: in l [m], psi [rad] and z [m]."""
         ...
 
     @property

@@ -39,8 +39,10 @@ def bands(model: Model, width_l: float, width_psi: float) -> tuple[Outline, ...]
     What lies beyond the arm's reach is left out.
     """
     space, (_, reach) = model.workspace, model.arm.reach
-    q, p = 0.5 * min(width_l, 2.0 * reach), 0.5 * min(width_psi, 2.0 * pi)
-    l_min, l_max, psi_min, psi_max = space.l_min, space.l_max, space.psi_min, space.psi_max
+    widest_l, widest_psi = space.widest
+    width_l, width_psi = min(width_l, widest_l, 2.0 * reach), min(width_psi, widest_psi, 2.0 * pi)
+    l_min, l_max, psi_min, psi_max = space.middles(width_l, width_psi)
+    q, p = 0.5 * width_l, 0.5 * width_psi
     far = min(l_max + q, reach)
     parts = (
         (l_max - q, far, psi_min - p, psi_max + p),

@@ -12,6 +12,7 @@ import msgspec
 from overreach.arm.mount import Mount
 from overreach.arm.planar import Arm2R
 from overreach.errors import SetupError
+from overreach.gate.limits import Limits
 from overreach.model.base import Base, Start
 from overreach.model.model import check_reach, check_workspace
 from overreach.model.workspace import Workspace
@@ -29,6 +30,8 @@ class PlanarRobot(Record, frozen=True):
     mount: Mount = Mount()
     gripper: bool = False
     summary: str = ""
+    command: Limits = Limits()
+    bands: tuple[float, float, float] = (0.1, 0.1, 0.1)
 
     def placed(self, mount: Mount, workspace: Workspace) -> PlanarRobot:
         """Return the same with its arm at another place, and another workspace; raises WorkspaceError."""

@@ -10,9 +10,10 @@ from typing import Any
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
+from overreach.files import write_text
 from overreach.law.body import WholeBody
 from overreach.reproduce import look
-from overreach.run.files import write_csv, write_table, write_text
+from overreach.run.files import write_csv, write_table
 from overreach.run.scenario import Scenario, load_scenario
 from overreach.run.simulate import Run, simulate
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from overreach.errors import SetupError
 from overreach.extras import require
-from overreach.run.files import try_to_write
+from overreach.files import try_to_write
 
 if TYPE_CHECKING:
     from overreach.reproduce.lab import Section
@@ -109,9 +109,9 @@ def _leave_ctrl_c_to_the_parent() -> None:
 
 
 def _write(out: Path, done: list[Done]) -> dict[str, Any]:
+    from overreach.files import write_json, write_text
     from overreach.reproduce import page
     from overreach.reproduce.headline import headline
-    from overreach.run.files import write_json, write_text
 
     results: dict[str, Any] = {"physics": {}, "timing": {}}
     for _, physics, timing in done:

@@ -9,6 +9,7 @@ import signal
 import sys
 from types import FrameType
 
+from overreach.arm.spatial.engine import warm_beside
 from overreach.clock import Clock, MonotonicClock
 from overreach.errors import SetupError
 from overreach.gate.gate import MAX_DELAY_S, check_delay
@@ -100,6 +101,8 @@ def run_robot(
 
         gc.collect()
         gc.freeze()
+        if getattr(device.model.arm, "governs", False):
+            warm_beside()
         loop.run(running)
 
 

@@ -14,12 +14,15 @@ import msgspec
 
 from overreach.law.blend import Blend, Step
 from overreach.law.body import Planner, WholeBody
+from overreach.law.laws import usual_blend
 from overreach.link.messages import Choice, Plug, Scene, Settings, encode
 from overreach.model.model import Model, check_workspace
 from overreach.model.outline import bands, workspace
 from overreach.parameters import Parameters, schema, summary
 from overreach.plugs import BLENDS, blend_plug, blends_in, law_names, law_plug, load_blend, load_law, names, usable
 from overreach.types import Frame, Record
+
+DIGITS = 4
 
 
 class Built(Record, frozen=True):
@@ -38,7 +41,12 @@ def usual(model: Model, law: Choice) -> Settings:
     Pages command in their picture's frame, the world's, unless the law has one of its own.
     """
     own = law_plug(law.name).frame
-    return Settings(model.workspace, law, frame=Frame.WORLD if own is Frame.HAND else own)
+    settings = Settings(model.workspace, law, frame=Frame.WORLD if own is Frame.HAND else own)
+    if not model.workspace.edges:
+        return settings
+    blend = usual_blend(load_blend(settings.blend.name, settings.blend.parameters), model)
+    widths = {one.name: round(getattr(blend, one.name), DIGITS) for one in schema(type(blend))}
+    return msgspec.structs.replace(settings, blend=Choice(settings.blend.name, widths))
 
 
 def build(settings: Settings, model: Model) -> Built:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from overreach.errors import UnknownNameError
-from overreach.plugs import MODELS, load_model, names, point
+from overreach.plugs import check_model_name, load_model, names, point
 from overreach.robots.base import Robot
 from overreach.robots.kinematic import KinematicRobot
 
@@ -18,12 +17,11 @@ def load_robot(name: str, now: float) -> Robot:
     if name in names(ROBOTS):
         maker: Callable[[float], Robot] = point(ROBOTS, name).load()
         return maker(now)
-    if name not in names(MODELS):
-        raise UnknownNameError("robot", name, names(ROBOTS, MODELS))
+    check_robot_name(name)
     return KinematicRobot(load_model(name), now=now)
 
 
 def check_robot_name(name: str) -> None:
     """Raise UnknownNameError, with the valid names, unless there is a robot called `name`; starts none."""
-    if name not in names(ROBOTS, MODELS):
-        raise UnknownNameError("robot", name, names(ROBOTS, MODELS))
+    if name not in names(ROBOTS):
+        check_model_name(name, names(ROBOTS))

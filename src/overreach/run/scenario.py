@@ -10,10 +10,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from overreach.arm.mount import Mount
 from overreach.errors import ScenarioError, UnknownNameError
 from overreach.gate.limits import Limits
 from overreach.law.blend import Blend
+from overreach.law.frame import of_two
+from overreach.law.laws import usual_blend
 from overreach.model.model import Model, check_reach, check_workspace
 from overreach.model.workspace import Workspace
 from overreach.plugs import load_model
@@ -23,9 +27,11 @@ from overreach.run.law_table import read_law
 from overreach.run.stamps import Segment, fitted
 from overreach.run.tables import CommandTable, Dither, Tables, read_tables
 from overreach.run.text import read_text
-from overreach.types import Frame, Record
+from overreach.types import Frame, Record, Twist
 
+NOTHING = Segment(0.0)
 LONGEST_S = 1e6
+LIMITS_4 = ("l_min", "l_max", "psi_min", "psi_max")
 MOST_STEPS = 20_000_000
 """Longest run: 20,000 s at 1 ms. Above this, dt is more likely mistyped than meant."""
 
@@ -53,14 +59,38 @@ class Scenario(Record, frozen=True):
         """Number of control periods."""
         return max(1, round(self.duration / self.dt))
 
+    def segment_at(self, t: float) -> Segment:
+        """Return the segment in force at `t` [s]; before the first one, nothing is commanded."""
+        k = bisect.bisect_right(self.segments, t + 1e-9 * self.dt, key=lambda segment: segment.t) - 1
+        return self.segments[k] if k >= 0 else NOTHING
+
     def command_at(self, t: float) -> tuple[float, float]:
         """Return the (v_c, w_c) in force at `t` [s], zero before the first segment, plus the tremor."""
-        k = bisect.bisect_right(self.segments, t + 1e-9 * self.dt, key=lambda segment: segment.t) - 1
-        v_c, w_c = (self.segments[k].v_c, self.segments[k].w_c) if k >= 0 else (0.0, 0.0)
+        segment = self.segment_at(t)
+        v_c, w_c = segment.v_c, segment.w_c
         if self.dither.l == 0.0 and self.dither.psi == 0.0:
             return v_c, w_c
         v, w = self.dither.at(t)
         return v_c + v, w_c + w
+
+    def twist_at(self, t: float, frame: Frame) -> Twist:
+        """Return the twist commanded at `t` [s], given in `frame`."""
+        planar, rest = of_two(frame, *self.command_at(t)), self.segment_at(t)
+        if rest.v_z == rest.w_x == rest.w_y == rest.w_z == 0.0:
+            return planar
+        return Twist(planar.v_x, planar.v_y, rest.v_z, rest.w_x, rest.w_y, planar.w_z + rest.w_z)
+
+    def on(self, model: Model) -> Scenario:
+        """Return the scenario on another robot: places scaled to its workspace, speeds as they are.
+
+        l is scaled linearly from edge to edge, psi by the half width; the sector is the robot's own.
+        """
+        old, new = self.model.workspace, model.workspace
+        l = new.l_min + (self.l - old.l_min) * (new.l_max - new.l_min) / (old.l_max - old.l_min)
+        psi = self.psi * (new.psi_max - new.psi_min) / (old.psi_max - old.psi_min)
+        return msgspec.structs.replace(
+            self, model=model, l=l, psi=min(new.psi_max, max(new.psi_min, psi)), blend=usual_blend(self.blend, model)
+        )
 
 
 def builtin_scenarios() -> dict[str, str]:
@@ -73,17 +103,19 @@ def builtin_scenarios() -> dict[str, str]:
     }
 
 
-def load_scenario(which: str | os.PathLike[str]) -> Scenario:
+def load_scenario(which: str | os.PathLike[str], robot: str = "") -> Scenario:
     """Return the built-in scenario called `which`, or the one in the TOML file `which`.
 
-    Raises ScenarioError (or another SetupError) whose text is one line.
+    robot: another robot to run it on; a built-in scenario is scaled to its workspace, a file's is not. Raises
+    ScenarioError (or another SetupError) whose text is one line.
     """
     name = os.fspath(which)
     if not name.endswith(".toml") and os.sep not in name:
         builtin = builtin_scenarios()
         if name not in builtin:
             raise UnknownNameError("scenario", name, builtin, "A file's name must end in .toml.")
-        return parse_scenario(builtin[name], name)
+        own = parse_scenario(builtin[name], name)
+        return own.on(load_model(robot)) if robot else own
     path = Path(name)
     try:
         text = read_text(path)
@@ -92,12 +124,15 @@ def load_scenario(which: str | os.PathLike[str]) -> Scenario:
         raise ScenarioError(f"no scenario file {name!r}. Built-in scenarios: {choices}.") from None
     except (OSError, UnicodeDecodeError) as error:
         raise ScenarioError(f"cannot read scenario file {name!r}: {error}") from None
-    return parse_scenario(text, path.stem, path.parent)
+    return parse_scenario(text, path.stem, path.parent, robot)
 
 
-def parse_scenario(text: str, name: str = "scenario", folder: Path | None = None) -> Scenario:
-    """Return the scenario in TOML `text`; `folder` is where its command file is looked for."""
-    return _assemble(read_tables(text, name), name, folder or Path())
+def parse_scenario(text: str, name: str = "scenario", folder: Path | None = None, robot: str = "") -> Scenario:
+    """Return the scenario in TOML `text`; `folder` is where its command file is looked for; robot: not its own."""
+    tables = read_tables(text, name)
+    if robot:
+        tables = msgspec.structs.replace(tables, robot=msgspec.structs.replace(tables.robot, name=robot))
+    return _assemble(tables, name, folder or Path())
 
 
 def _segments(command: CommandTable, name: str, folder: Path) -> tuple[Segment, ...]:
@@ -124,8 +159,11 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
             f"scenario {name!r}: command.duration and command.dt must be > 0 s, "
             f"got {command.duration:g} and {command.dt:g}"
         )
-    if any(max(abs(one.v_c), abs(one.w_c)) > FASTEST for one in command.segments or ()):
-        raise ScenarioError(f"scenario {name!r}: command.segments: v_c and w_c must be within +-{FASTEST:g}")
+    for one in command.segments or ():
+        if max(map(abs, (one.v_c, one.w_c, one.v_z, one.w_x, one.w_y, one.w_z))) > FASTEST:
+            raise ScenarioError(f"scenario {name!r}: command.segments: velocities must be within +-{FASTEST:g}")
+        if one.gripper is not None and not 0.0 <= one.gripper <= 1.0:
+            raise ScenarioError(f"scenario {name!r}: command.segments: gripper must be 0 to 1, got {one.gripper:g}")
     if command.duration > LONGEST_S or command.duration / command.dt > MOST_STEPS:
         raise ScenarioError(
             f"scenario {name!r}: more than {LONGEST_S:,.0f} s or {MOST_STEPS:,} steps (duration / dt): "
@@ -146,6 +184,8 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
     )
     s_x, s_y = robot.shoulder or (given.mount.s_x, given.mount.s_y)
     mount = Mount(s_x, s_y, given.mount.yaw if robot.mount_yaw is None else robot.mount_yaw)
+    if own.edges:
+        workspace = msgspec.structs.replace(own, **{name: getattr(workspace, name) for name in LIMITS_4})
     model = given.placed(mount, workspace)
     check_workspace(model, workspace)
     start_l = given.start.l if robot.l is None else robot.l
@@ -154,6 +194,8 @@ def _assemble(tables: Tables, name: str, folder: Path) -> Scenario:
     if abs(start_psi) > math.pi:
         raise ScenarioError(f"scenario {name!r}: robot.psi must be within +-pi rad, got {start_psi:g}")
     blend, parameters = read_law(tables.law, name)
+    if "blend" not in tables.law and not {"q_l", "q_psi"} & set(tables.law):
+        blend = usual_blend(blend, model)
     return Scenario(
         name=name,
         description=tables.description,

@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
 from overreach.law.body import WholeBody
-from overreach.law.frame import of_two
 from overreach.plugs import load_law
 from overreach.requests import ArmRequest
 from overreach.robots.kinematic import KinematicRobot
 from overreach.run.law_alone import PilotAlone
 from overreach.run.row import Row, row_of
 from overreach.run.scenario import Scenario, load_scenario
+from overreach.run.spatial_row import SpatialRow, is_spatial, spatial_row
 from overreach.run.summary import Summary, summarise
 from overreach.types import Command, RobotState
 from overreach.verdicts import Verdict
@@ -28,7 +28,7 @@ class Run(NamedTuple):
 
     rows: one a step; errors: per step, the EE's true rigid-body velocity less the commanded one,
     (radial, tangential) [m/s]; asked: per step, the base twist (v_b, w_b) that was asked for, which a slow motor
-    does not give at once; summary: what happened.
+    does not give at once; summary: what happened; spatial: for a robot whose arm moves in space, a row more a step.
     """
 
     scenario: Scenario
@@ -37,6 +37,7 @@ class Run(NamedTuple):
     errors: list[tuple[float, float]]
     asked: list[tuple[float, float]]
     summary: Summary
+    spatial: list[SpatialRow]
 
 
 def law_of(scenario: Scenario, name: str, changes: Mapping[str, Any] | None = None) -> WholeBody:
@@ -46,7 +47,7 @@ def law_of(scenario: Scenario, name: str, changes: Mapping[str, Any] | None = No
 
 def pilot_for(scenario: Scenario, law: WholeBody) -> Pilot:
     """Return a new pilot for a run of `scenario`."""
-    if scenario.limits is None:
+    if scenario.limits is None and not is_spatial(scenario.model):
         return PilotAlone(scenario.model, law)
     return Pilot(scenario.model, law, scenario.limits)
 
@@ -59,7 +60,8 @@ def ticks(scenario: Scenario, law: WholeBody, pilot: Pilot | None = None) -> Ite
     pilot.ask(ArmRequest(OPERATOR), 0.0)
     for k in range(scenario.steps):
         t = k * scenario.dt
-        command = Command(OPERATOR, k + 1, 1, True, of_two(frame, *scenario.command_at(t)), frame, seen=t)
+        gripper = scenario.segment_at(t).gripper
+        command = Command(OPERATOR, k + 1, 1, True, scenario.twist_at(t, frame), frame, gripper, t)
         tick = pilot.tick(robot.read(t), command, t, scenario.dt)
         robot.write(tick.base, tick.joints, tick.gripper, t, t + scenario.dt)
         yield tick, robot.true
@@ -78,10 +80,14 @@ def simulate(scenario: Scenario | str, law: WholeBody | str = "exact") -> Run:
     errors: list[tuple[float, float]] = []
     asked: list[tuple[float, float]] = []
     verdicts: dict[Verdict, int] = {}
+    in_space = is_spatial(scenario.model)
+    spatial: list[SpatialRow] = []
     for tick, true in ticks(scenario, law):
         row, error = row_of(tick, true, scenario)
         rows.append(row)
         errors.append(error)
         asked.append((tick.base.v_x, tick.base.w_z))
+        if in_space:
+            spatial.append(spatial_row(tick, true, scenario.model))
         verdicts[tick.decided.verdict] = verdicts.get(tick.decided.verdict, 0) + 1
-    return Run(scenario, law.name, rows, errors, asked, summarise(scenario, law, rows, errors, verdicts))
+    return Run(scenario, law.name, rows, errors, asked, summarise(scenario, law, rows, errors, verdicts), spatial)

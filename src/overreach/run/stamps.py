@@ -34,11 +34,20 @@ FEW = 3
 
 
 class Segment(Record, frozen=True):
-    """From t [s] on, until the next segment, the command is (v_c, w_c)."""
+    """From t [s] on, until the next segment, the command is this.
+
+    v_c [m/s], w_c [rad/s or m/s]: the two axes of a stick, in the command's frame; v_z [m/s], w_x, w_y, w_z [rad/s]:
+    the rest of the twist, w_z on top of what the stick says; gripper: its opening, 0 to 1, None to leave it.
+    """
 
     t: float
-    v_c: float
-    w_c: float
+    v_c: float = 0.0
+    w_c: float = 0.0
+    v_z: float = 0.0
+    w_x: float = 0.0
+    w_y: float = 0.0
+    w_z: float = 0.0
+    gripper: float | None = None
 
 
 def fitted(

@@ -2,6 +2,7 @@
 
 import { Gamepads } from "./input/gamepad.js";
 import { attachKeys } from "./input/keys.js";
+import { attachLift } from "./input/lift.js";
 import { attachPad } from "./input/pad.js";
 import { Stick } from "./input/stick.js";
 import { attachStop } from "./input/stop.js";
@@ -37,8 +38,8 @@ const silent = () => performance.now() - page.heard > SILENT_MS;
 const link = new Link({
   welcome(robot, settings, scene) {
     page.robot = robot;
-    const { v_c, w_c } = robot.limits;
-    stick.most = { v_x: v_c, v_y: v_c, w_z: w_c };
+    const { v_c, w_c, v_z } = robot.limits;
+    stick.most = { v_x: v_c, v_y: v_c, w_z: w_c, v_z: robot.obeys.includes("v_z") ? v_z : 0 };
     panel.welcome(robot);
     configure(settings, scene);
   },
@@ -159,6 +160,7 @@ view.onFollow = (on) => $("follow").setAttribute("aria-pressed", on);
 view.onTurns = (on) => $("turn").setAttribute("aria-pressed", on);
 
 attachPad(stick, $("pad"));
+attachLift(stick, $("lift"));
 attachKeys(stick, buttons);
 const gamepads = new Gamepads(stick, buttons);
 new Inputs(stick, gamepads);

@@ -1,4 +1,4 @@
-// Arrow keys and W A S D. Shift is a quarter of the speed. A held key is the dead-man.
+// Arrow keys and W A S D; E and Q, or Page Up and Down, for the height. Shift is a quarter of the speed. A held key is the dead-man.
 
 const WAYS = {
   ArrowUp: [0, 1], KeyW: [0, 1],
@@ -6,6 +6,7 @@ const WAYS = {
   ArrowLeft: [-1, 0], KeyA: [-1, 0],
   ArrowRight: [1, 0], KeyD: [1, 0],
 };
+const UP = { KeyE: 1, PageUp: 1, KeyQ: -1, PageDown: -1 };
 const SLOW = 0.25;
 
 // A field in which a Space or a letter is written. A list to choose from has a field, too, but only to be found by.
@@ -21,6 +22,7 @@ const isStop = ({ code, key, target }) => code === "Escape" || key === "Escape" 
 
 export function attachKeys(stick, buttons) {
   const down = new Set();
+  const up = new Set();
   let slow = false; // as the newest event has it: no key of its own is kept track of
 
   const steer = () => {
@@ -33,14 +35,23 @@ export function attachKeys(stick, buttons) {
     const size = Math.max(1, Math.hypot(x, y)) / (slow ? SLOW : 1);
     return [x / size, y / size];
   };
+  const raise = () => {
+    let z = 0;
+    for (const key of up) z += UP[key];
+    if (!up.size) stick.lower("height keys");
+    else if (!stick.lift("height keys", z * (slow ? SLOW : 1))) up.clear();
+  };
   const letGo = () => {
     down.clear();
+    up.clear();
+    stick.lower("height keys");
     stick.release("keys");
   };
   const shift = (event) => {
     if (event.shiftKey === slow) return;
     slow = event.shiftKey;
     if (down.size) stick.move("keys", ...steer());
+    if (up.size) raise();
   };
   const act = {
     Enter: (event) => event.target.tagName !== "BUTTON" && buttons.arm(),
@@ -66,6 +77,11 @@ export function attachKeys(stick, buttons) {
       down.add(key);
       if (stick.holder === "keys") stick.move("keys", ...steer());
       else if (!stick.press("keys", ...steer(), false)) down.clear();
+    } else if (UP[key] && stick.most.v_z) {
+      event.preventDefault();
+      if (event.repeat) return;
+      up.add(key);
+      raise();
     } else if (event.repeat) return;
     else if (act[key]) act[key](event);
     else if (event.key === "+" || event.key === "=") buttons.zoom(1.25);
@@ -74,6 +90,7 @@ export function attachKeys(stick, buttons) {
   window.addEventListener("keyup", (event) => {
     shift(event);
     if (isStop(event)) event.preventDefault(); // some browsers press the button that has the focus only now
+    if (up.delete(named(event))) return raise();
     if (!down.delete(named(event))) return;
     if (down.size) stick.move("keys", ...steer());
     else stick.release("keys");

@@ -15,11 +15,13 @@ export class Stick {
     this.link = link;
     this.frame = "hand"; // sent with every message: what the two axes mean
     this.axes = ["v_x", "w_z"]; // forward, leftward: parts of the twist in that frame
-    this.most = { v_x: 0, v_y: 0, w_z: 0 }; // at full deflection
+    this.most = { v_x: 0, v_y: 0, w_z: 0, v_z: 0 }; // at full deflection
     this.expo = USUAL_EXPO;
     this.barred = ""; // why nobody may take hold from here
     this.grip = 0;
     this.holder = null;
+    this.lifter = null; // the input that moves the hand up or down; it holds alone where nothing else does
+    this.z = 0; // up, -1 to 1
     this.x = 0; // right, -1 to 1: where it is
     this.y = 0; // up, -1 to 1
     this.curved = false; // whether the curve is applied to it
@@ -49,8 +51,13 @@ export class Stick {
   get scale() {
     return this.curved ? factor(Math.hypot(this.x, this.y), this.expo) : 1;
   }
+  get upward() {
+    return this.z * this.most.v_z;
+  }
   get twist() {
-    return { [this.axes[0]]: brief(this.forward), [this.axes[1]]: brief(this.leftward) };
+    const twist = { [this.axes[0]]: brief(this.forward), [this.axes[1]]: brief(this.leftward) };
+    if (this.z) twist.v_z = brief(this.upward);
+    return twist;
   }
 
   // Take hold; returns whether that was allowed. curved: for a stick that can stand anywhere, unlike keys.
@@ -79,11 +86,36 @@ export class Stick {
     this.y = y / size;
   }
 
-  // Let go. doubt: why, where it was not the operator's own doing.
+  // Move up or down, beside whatever moves the hand along the ground, or alone; returns whether that was allowed.
+  lift(lifter, z) {
+    if (!this.held && !this.press(lifter, 0, 0, false)) return false;
+    this.lifter = lifter;
+    this.z = Math.max(-1, Math.min(1, z));
+    this.say();
+    return true;
+  }
+
+  // Up and down alone are let go: what is held along the ground goes on.
+  lower(lifter, doubt = "") {
+    if (this.lifter !== lifter) return;
+    this.lifter = null;
+    this.z = 0;
+    if (this.holder === lifter || doubt) this.release(this.holder, doubt);
+    else this.say(true);
+  }
+
+  // Let go. doubt: why, where it was not the operator's own doing. Whoever still moves it up or down then holds alone.
   release(holder = this.holder, doubt = "") {
     if (this.holder === null || this.holder !== holder) return;
-    this.holder = null;
+    const others = arguments.length === 1 && this.lifter !== null && this.lifter !== holder;
     this.x = this.y = 0;
+    if (others) {
+      this.holder = this.lifter;
+      this.say(true);
+      return;
+    }
+    this.holder = this.lifter = null;
+    this.z = 0;
     this.say(true);
     for (const ms of AGAIN_MS) setTimeout(() => !this.held && this.say(), ms);
     if (doubt) for (const listener of this.lost) listener(doubt);

@@ -33,6 +33,7 @@ export class Panel {
     put($("r-stop"), `${robot.stop_time.toFixed(2)} s`);
     this.maxDelay = (robot.max_delay * 1000).toFixed(0);
     $("restart").hidden = !robot.simulated;
+    $("lift").hidden = $("height").hidden = !robot.obeys.includes("v_z");
   }
 
   show(s, operator) {
@@ -60,7 +61,7 @@ export class Panel {
     }
     $("arm").disabled = mine || s.stopped || Boolean(this.viewOnly);
     $("reset").disabled = !s.stopped;
-    $("pad").dataset.armed = mine;
+    $("pad").dataset.armed = $("lift").dataset.armed = mine;
     const hint = s.stopped ? "Press Reset, then Arm" : this.viewOnly ? "View only" : !mine ? "Press Arm, then drag" : "";
     $("pad-hint").hidden = !hint;
     put($("pad-hint"), hint);
@@ -70,6 +71,7 @@ export class Panel {
   numbers(s) {
     const [x, y] = s.hand;
     put($("r-hand"), `${signed(x)}, ${signed(y)} m`);
+    put($("r-height"), `${signed(s.hand[2])} m`);
     put($("r-base"), `${signed(s.pose.x)}, ${signed(s.pose.y)} m · ${signed((s.pose.heading * 180) / Math.PI, 0)}°`);
     put($("r-speed"), `${Math.hypot(...s.velocity).toFixed(2)} m/s`);
     put($("r-refused"), `${s.refused}`);
@@ -112,7 +114,7 @@ export class Panel {
   down(reason) {
     this.say("stop", "No connection", reason);
     for (const id of ["arm", "reset"]) $(id).disabled = true;
-    $("pad").dataset.armed = false;
+    $("pad").dataset.armed = $("lift").dataset.armed = false;
     $("pad-hint").hidden = true;
   }
 
@@ -129,5 +131,6 @@ export class Panel {
   stick(stick) {
     put($("out-v"), signed(stick.forward));
     put($("out-w"), signed(stick.leftward));
+    put($("out-z"), signed(stick.upward));
   }
 }

@@ -1,0 +1,255 @@
+"""An arm of any joints in space: `overreach.arm.chain.Arm`, and its own step, which chooses among joint motions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, final
+
+import numpy as np
+
+from overreach.arm.chain import Asked, Moved, Point, Rest, Step
+from overreach.arm.mount import Mount
+from overreach.arm.polar import wrap
+from overreach.arm.spatial import step as layout
+from overreach.arm.spatial.engine import Engine, engine
+from overreach.arm.spatial.manner import Manner
+from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.settle import Posture
+from overreach.arm.spatial.task import wanted, yielding
+from overreach.types import Channel
+from overreach.verdicts import Verdict
+
+NEWTON = 4
+"""Steps of Newton's method that end a period where it should."""
+BRAKING = 0.5
+"""A joint brakes before its limit with this part of its greatest acceleration."""
+H = 1e-6
+"""Step [rad, m] of the differences that give the manipulability's slope."""
+
+
+@final
+class SpatialArm:
+    """Joints as screws in the arm's frame, their limits, a home posture, and the manner in which the hand is held.
+
+    screws, tip: as in `screws`; compiled: whether to use the compiler; None: if there is one.
+    """
+
+    def __init__(
+        self,
+        channels: tuple[Channel, ...],
+        screws: Array,
+        tip: Array,
+        home: tuple[float, ...],
+        manner: Manner,
+        compiled: bool | None = None,
+    ) -> None:
+        self.channels, self.screws, self.tip, self.home, self.manner = channels, screws, tip, home, manner
+        self._compiled = compiled
+        self.limits: Array = np.array(
+            [
+                (one.lower, one.upper, one.rate_max, BRAKING * one.change_max, one.change_max, at, one.rate_max**2)
+                for one, at in zip(channels, home, strict=True)
+            ]
+        )
+        self.posture_at_home = Posture(screws, tip, self.limits, manner)
+        self.R_home = self.posture_at_home.R_home
+        self.engine: Engine = engine(screws, tip, self.limits, manner.setup(self.R_home), compiled)
+
+    def __reduce__(self) -> tuple[type[SpatialArm], tuple[Any, ...]]:
+        """Travel between processes as what it is made from: compiled code would be compiled anew."""
+        return SpatialArm, (self.channels, self.screws, self.tip, self.home, self.manner, self._compiled)
+
+    def held(self, manner: Manner) -> SpatialArm:
+        """Return the same arm with its hand held in another manner."""
+        return SpatialArm(self.channels, self.screws, self.tip, self.home, manner, self._compiled)
+
+    governs = True
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The place, and the turnings that it holds where they are about r, t or z."""
+        return self.manner.rows
+
+    @property
+    def branch(self) -> tuple[tuple[float, float], ...]:
+        """The joints' own limits: in the workspace the posture is a function of the place."""
+        return tuple((one.lower, one.upper) for one in self.channels)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Least and greatest l [m]."""
+        return 0.0, self.manner.reach
+
+    def at(self, joints: tuple[float, ...], mount: Mount) -> SpatialChain:
+        """Return the arm at `joints` [rad, m], mounted at `mount`."""
+        return SpatialChain(self, joints, mount)
+
+    def posture(self, l: float, psi: float, z: float | None = None) -> tuple[float, ...]:
+        """Return joints that put the hand at (l, psi) and height z [m], by default its home's, walked to from home."""
+        return self.posture_at_home.walk(l, psi, z)
+
+
+@final
+class SpatialChain:
+    """The arm at its joints; see `overreach.arm.chain.Chain`."""
+
+    __slots__ = ("J", "_arm", "_mount", "_q", "_turn", "joints", "l", "places", "pose", "psi")
+
+    def __init__(self, arm: SpatialArm, joints: tuple[float, ...], mount: Mount) -> None:
+        n = len(joints)
+        self._arm, self._mount, self.joints = arm, mount, joints
+        self._q = q = np.array(joints)
+        self.pose, self.J, self.places = np.empty(12), np.empty((6, n)), np.empty((n, 3))
+        arm.engine.forward(q, self.pose, self.J, self.places)
+        x, y = float(self.pose[9]), float(self.pose[10])
+        self.l = math.hypot(x, y)
+        self.psi = math.atan2(y, x)
+        self._turn = (1.0, 0.0) if mount.yaw == 0.0 else (math.cos(mount.yaw), math.sin(mount.yaw))
+
+    def _mounted(self, x: float, y: float, z: float) -> Point:
+        mount, (c, s) = self._mount, self._turn
+        return mount.s_x + c * x - s * y, mount.s_y + s * x + c * y, z
+
+    @property
+    def hand(self) -> Point:
+        """The hand (x, y, z) [m] in the base frame."""
+        return self._mounted(*self.pose[9:].tolist())
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """From the ground under the shoulder through the joints' places to the hand."""
+        places = self.places.tolist()
+        return self._mounted(0.0, 0.0, 0.0), *[self._mounted(*place) for place in places], self.hand
+
+    @property
+    def attitude(self) -> Array:
+        """The hand's attitude in the base frame, (3, 3)."""
+        c, s = self._turn
+        return np.asarray(np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))) @ self.pose[:9].reshape(3, 3))
+
+    @property
+    def heading(self) -> float:
+        """How far [rad] the heading that the hand holds is past its bearing: that which its yaw comes from."""
+        M = self.pose[:9].reshape(3, 3) @ self._arm.R_home.T
+        yaw = wrap(math.atan2(M[1, 0] - M[0, 1], M[0, 0] + M[1, 1]) - self.psi)
+        return wanted(yaw, self._arm.manner.yaw)
+
+    def turning(self, w_c: float, w_b: float, joints: tuple[float, ...]) -> float:
+        """Return how fast [rad/s] the hand is to yaw: as its bearing does or, where it is fixed, by w_c."""
+        inside = 0.0
+        if self._arm.manner.yaw > 0.0:
+            _, inside = yielding(self.heading, self._arm.manner.yaw)
+        return inside * w_c + (1.0 - inside) * (w_b + self.moved(joints)[1])
+
+    @property
+    def manipulability(self) -> float:
+        """sqrt(det(A A^T)), A the Jacobian's rows that the arm has."""
+        A = np.array(self.jacobian())[list(self._arm.rows)]
+        return math.sqrt(max(0.0, float(np.linalg.det(A @ A.T))))
+
+    def towards_manipulability(self) -> tuple[float, ...]:
+        """Return the gradient of the manipulability, by differences."""
+        slopes = []
+        for k in range(len(self.joints)):
+            ends = []
+            for h in (H, -H):
+                joints = list(self.joints)
+                joints[k] += h
+                ends.append(self._arm.at(tuple(joints), self._mount).manipulability)
+            slopes.append((ends[0] - ends[1]) / (2.0 * H))
+        return tuple(slopes)
+
+    def _polar(self) -> Array:
+        c, s = math.cos(self.psi), math.sin(self.psi)
+        return np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)))
+
+    def jacobian(self) -> tuple[tuple[float, ...], ...]:
+        """Return the rows of l, psi, z and the rotations about r, t, z."""
+        polar = self._polar()
+        rows = np.concatenate((polar @ self.J[:3], polar @ self.J[3:]))
+        rows[1] /= self.l
+        return tuple(map(tuple, rows.tolist()))
+
+    def moved(self, rates: tuple[float, ...]) -> Moved:
+        """Return what the hand does at joint rates `rates`."""
+        v_x, v_y, v_z, w_x, w_y, w_z = (self.J @ rates).tolist()
+        c, s = math.cos(self.psi), math.sin(self.psi)
+        return c * v_x + s * v_y, (c * v_y - s * v_x) / self.l, v_z, c * w_x + s * w_y, c * w_y - s * w_x, w_z
+
+    def rates(self, v_m: float, w_m: float, rest: Rest, dt: float) -> tuple[tuple[float, ...], Verdict]:
+        """Return the joint rates, weighted by the joints' speeds, with which a period ends where it should.
+
+        Limits are not looked at: `step` does.
+        """
+        arm = self._arm
+        rows = list(arm.rows)
+        asked = np.array((v_m, w_m, *rest))[rows]
+        lengths = np.array((1.0, self.l, 1.0, *(arm.manner.ell,) * 3))[rows, None]
+        w = arm.limits[:, -1]
+
+        def solved(chain: SpatialChain, x: Array) -> Array:
+            A = np.array(chain.jacobian())[rows] * lengths
+            A_w = A * w
+            G = A_w @ A.T
+            G.flat[:: len(rows) + 1] += SLIGHT * G.trace()
+            return np.asarray(A_w.T @ np.linalg.solve(G, x * lengths[:, 0]))
+
+        dq = solved(self, asked)
+        if dt > 0.0 and np.any(asked):
+            l, psi, z = self.l + v_m * dt, self.psi + w_m * dt, float(self.pose[11]) + rest[0] * dt
+            turn = np.array(rest[1:]) @ self._polar() * dt
+            R = turned(turn) @ self.pose[:9].reshape(3, 3)
+            for _ in range(NEWTON):
+                end = arm.at(tuple((self._q + dq * dt).tolist()), self._mount)
+                left = end._polar() @ vector(R @ end.pose[:9].reshape(3, 3).T)
+                off = np.array((l - end.l, wrap(psi - end.psi), z - float(end.pose[11]), *left.tolist()))[rows]
+                dq = dq + solved(end, off) / dt
+        return tuple(dq.tolist()), Verdict.MOVING
+
+    def step(self, asked: Asked) -> Step:
+        """Return the arm's step: see `overreach.arm.spatial.step`."""
+        arm, mount, n = self._arm, self._mount, len(self.joints)
+        c, s = self.pose[9] / self.l, self.pose[10] / self.l
+        u_r, u_t, u_z = asked.u
+        numbers = np.array(
+            (
+                c * u_r - s * u_t, s * u_r + c * u_t, u_z, asked.w_c, asked.delta,
+                *asked.plan, *asked.slip, *asked.was, *asked.change, asked.dt, mount.s_x, mount.s_y, *self._turn,
+            )
+        )  # fmt: skip
+        out = np.empty(n + layout.DONE)
+        arm.engine.step(self._q, self.pose, self.J, np.array(asked.joints), numbers, out)
+        *joints, v_x, v_y, w_z, scale, _sigma, joint, why, _off_v, _off_w, _yaw = out.tolist()
+        verdict, said = SAYS[int(why)]
+        name = arm.channels[int(joint)].moves if joint >= 0.0 else "A joint"
+        return Step(tuple(joints), (v_x, v_y, w_z), scale, verdict, said.format(name))
+
+
+SAYS: dict[int, tuple[Verdict, str]] = {
+    layout.FINE: (Verdict.MOVING, ""),
+    layout.AT_LIMIT: (Verdict.JOINT_LIMIT, "{} is near its limit."),
+    layout.AT_SPEED: (Verdict.SPEED, "{} is at its greatest speed."),
+    layout.CHANGING: (Verdict.ACCELERATION, ""),
+    layout.STUCK: (Verdict.JOINT_LIMIT, "{} is at its limit, and no other can take its part."),
+    layout.OFF: (Verdict.OFF, ""),
+}
+"""Why a step is less than was asked -> the verdict, and its reason with the joint's name."""
+SLIGHT = 1e-14
+"""Damping of `rates`, as a part of the trace: of no weight but where the arm is singular."""
+
+
+def turned(w: Array) -> Array:
+    """Return the rotation by the vector `w` [rad]."""
+    angle = float(np.linalg.norm(w))
+    if angle == 0.0:
+        return np.eye(3)
+    x, y, z = w / angle
+    K = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
+
+
+def vector(R: Array) -> Array:
+    """Return the rotation vector [rad] of R: its logarithm."""
+    axis = np.array((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]))
+    sine = 0.5 * float(np.linalg.norm(axis))
+    return axis * (0.5 if sine < 1e-9 else 0.5 * math.atan2(sine, 0.5 * (float(np.trace(R)) - 1.0)) / sine)

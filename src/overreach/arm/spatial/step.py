@@ -1,0 +1,277 @@
+"""One period of an arm in space on a base that takes its part: rates, what they achieve, and what limits them.
+
+Scalar: to be compiled. Its twin with numpy is `step_numpy`; both follow one specification, to 1e-9:
+
+    f         the hand's yaw past its bearing that is wanted; R = Rz(bearing + f) R_home is the reference attitude
+    base      what really happens: the plan, held to what its acceleration allows, and its slip
+    x         s u, less what the base carries, plus K_R log(R R_hand^T): s is one scale for the whole command
+    rates     `fit`; where s < 1, the base is scaled as well and the arm solved again
+    q_1       q + rates dt; the base moves on its exact arc; the pose still missing there is made up for by one more
+              inverse over the joints that are not at a bound (a chord-Newton step)
+    verdict   of the forward kinematics at the end: where the hand is not where s u takes it, smaller s are tried, and
+              at last the arm only holds its attitude
+
+A step is exact in the hand's place, at the end of its period, whatever the joints' curvature.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from overreach.arm.spatial.fit import fit
+from overreach.arm.spatial.inverse import damping_beside, inverse_beside, rates
+from overreach.arm.spatial.room import CHANGE, SPEED, WEIGHT, bounds, downhill
+from overreach.arm.spatial.screws import Array, forward
+from overreach.arm.spatial.task import count, product, rows, yielding
+from overreach.arm.spatial.turning import apart, yawed
+
+HELD, ELL, EPS, NULL_GAIN, K_R, MARGIN, D, TOL_V, TOL_W = range(9)
+APPROACH, R_HOME = 9, 12
+SETUP = 21
+"""What is fixed for an arm and its orientation mode, in `setup`: the turnings that are held, length ell [m], eps [m/s],
+gains [1/s], margin [rad, m], the greatest deviation D of a fixed yaw [rad] (0: the bearing is followed), tolerances
+[m/s, rad]; then the approach axis in the hand's frame (3) and the hand's attitude at bearing 0, by rows (9)."""
+
+U, W_C, DELTA, PLAN, SLIP, WAS, STEP, DT, S_X, S_Y, COS, SIN, ASKED = 0, 3, 4, 5, 8, 11, 14, 17, 18, 19, 20, 21, 22
+"""What is asked, in `asked`: u [m/s] along the arm's axes (3), w_c [rad/s], the wanted yaw past the bearing [rad], the
+base's plan, slip, last written twist and greatest change (3 each: v_x, v_y, w_z, along the base's axes), the period
+[s]; shoulder [m] and cosine and sine of the arm's yaw in the base frame."""
+
+BASE, SCALE, SIGMA, JOINT, WHY, OFF_V, OFF_W, YAW, DONE = 0, 3, 4, 5, 6, 7, 8, 9, 10
+"""What is answered, in `out`, behind the n joint rates: the base twist to write (3), scale, sigma [m/s], the joint that
+limits (-1: none), why, error at the period's end [m/s], of the attitude [rad], and f [rad]."""
+FINE, AT_LIMIT, AT_SPEED, CHANGING, STUCK, OFF = range(6)
+"""Why a command is scaled: a joint's limit, a joint's speed, its acceleration, nothing fits, the hand would be off."""
+
+SMALL_TURN = 2e-3
+"""An attitude's error [rad] up to which it is made up for within one period; a greater one fades at K_R."""
+AT_BOUND = 1e-9
+SLIGHTLY = 1e-9
+"""A change of rates beyond its limit by this part is rounding, and cut off."""
+NOT_WHOLE = 0.999
+"""The scale that is told where the hand's place is kept and its attitude is not."""
+ATTEMPTS = 4
+"""Scales that are tried where a step misses: s, s/2, s/4, 0."""
+
+
+def reach_for(wanted: float, was: float, step: float) -> float:
+    """Return what a base rate becomes in one period."""
+    return max(was - step, min(was + step, wanted))
+
+
+def moved_with(asked: Array, base: Array, out: Array) -> None:
+    """Write the twist of the arm's frame, along its own axes, that a base twist gives it into `out` (3,)."""
+    v_x, v_y = base[0] - base[2] * asked[S_Y], base[1] + base[2] * asked[S_X]
+    out[0], out[1], out[2] = asked[COS] * v_x + asked[SIN] * v_y, asked[COS] * v_y - asked[SIN] * v_x, base[2]
+
+
+def happens(asked: Array, base: Array, slip: Array, out: Array) -> None:
+    """Write the twist that the arm's frame really has, for what is written to the base and its slip."""
+    moved_with(asked, base, out)
+    for i in range(3):
+        out[i] += slip[i]
+
+
+def task_of(T: Array, v_x: float, v_y: float, v_z: float, yaw: float, out: Array) -> None:
+    """Write T (v_x, v_y, v_z, 0, 0, yaw) into `out`."""
+    for i in range(T.shape[0]):
+        out[i] = T[i, 0] * v_x + T[i, 1] * v_y + T[i, 2] * v_z + T[i, 5] * yaw
+
+
+def left_by(T: Array, base: Array, hand: Array, polar: Array, inside: float, e: Array, out: Array) -> None:
+    """Write into `out` the task that a base twist leaves to the arm, and with it the turning `e` [rad/s].
+
+    polar: cosine and sine of the hand's bearing, and l. A hand that follows its bearing (inside = 0) turns with it; one
+    whose yaw is held (inside = 1) turns back as the base turns.
+    """
+    v_x, v_y = base[0] - base[2] * hand[10], base[1] + base[2] * hand[9]
+    bearing_rate = (polar[0] * v_y - polar[1] * v_x) / polar[2]
+    task_of(T, -v_x, -v_y, 0.0, -inside * base[2] - (1.0 - inside) * bearing_rate, out)
+    for i in range(3, T.shape[0]):
+        out[i] += T[i, 3] * e[0] + T[i, 4] * e[1] + T[i, 5] * e[2]
+
+
+def goal(hand: Array, u: Array, scale: float, base: Array, dt: float, out: Array) -> None:
+    """Write where s u takes the hand in `dt` [s], seen from where the base twist has then taken the base (3,) [m]."""
+    turn = base[2] * dt
+    half = 0.5 * turn
+    chord = dt * (1.0 - half * half / 6.0 if abs(half) < 1e-4 else math.sin(half) / half)
+    c_h, s_h, c, s = math.cos(half), math.sin(half), math.cos(turn), math.sin(turn)
+    x = hand[9] + scale * u[0] * dt - chord * (base[0] * c_h - base[1] * s_h)
+    y = hand[10] + scale * u[1] * dt - chord * (base[0] * s_h + base[1] * c_h)
+    out[0], out[1], out[2] = c * x + s * y, c * y - s * x, hand[11] + scale * u[2] * dt
+
+
+def missing(T: Array, place: Array, R: Array, hand: Array, e: Array, out: Array) -> float:
+    """Write the task from a hand to a place and an attitude into `out`; return the length of its turning part."""
+    apart(R, hand, e)
+    size = 0.0
+    for i in range(T.shape[0]):
+        if i < 3:
+            out[i] = place[i] - hand[9 + i]
+        else:
+            out[i] = T[i, 3] * e[0] + T[i, 4] * e[1] + T[i, 5] * e[2]
+            size += out[i] * out[i]
+    return math.sqrt(size)
+
+
+def half_turn(angle: float) -> float:
+    """Return `angle` [rad] less a whole turn where it is beyond half a turn."""
+    if angle > math.pi:
+        return angle - 2.0 * math.pi
+    return angle + 2.0 * math.pi if angle < -math.pi else angle
+
+
+def step(
+    screws: Array, tip: Array, limits: Array, setup: Array, q: Array, hand: Array, J: Array, was: Array, asked: Array,
+    out: Array,
+) -> None:  # fmt: skip
+    """Write the step of an arm at joints `q` (n,), with `hand` and `J` from `forward`, into `out` (n + DONE,).
+
+    was: the joint rates that were written last. See SETUP, ASKED and BASE for the others. Always finite.
+    """
+    n = q.shape[0]
+    held, dt = int(setup[HELD]), asked[DT]
+    m = count(held)
+    T, T_1, A, B, J_1 = np.empty((m, 6)), np.empty((m, 6)), np.empty((m, n)), np.empty((m, m)), np.empty((6, n))
+    A_1, x, x_c = np.empty((m, n)), np.empty(m), np.empty(m)
+    low, high, null, dq, q_1, more = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    free, w, soft_low, soft_high = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    hand_1, places = np.empty(12), np.empty((n, 3))
+    R, e, place, none = np.empty(9), np.empty(3), np.empty(3), np.zeros(3)
+    base, real, plan, slip, u = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    polar, off = np.empty(3), np.empty(3)
+    R_home, approach = setup[R_HOME : R_HOME + 9], setup[APPROACH : APPROACH + 3]
+    ell, eps = setup[ELL], setup[EPS]
+    moved_with(asked, asked[SLIP : SLIP + 3], slip)
+
+    r_x, r_y = hand[9], hand[10]
+    polar[2] = max(math.sqrt(r_x * r_x + r_y * r_y), 1e-9)
+    polar[0], polar[1] = r_x / polar[2], r_y / polar[2]
+    bearing = math.atan2(r_y, r_x)
+    f, inside = 0.0, 0.0
+    if setup[D] > 0.0:
+        f, inside = yielding(asked[DELTA], setup[D])
+    yawed(R_home, bearing + f, R)
+    apart(R, hand, e)
+    rows(held, bearing, R, approach, ell, T)
+    product(T, J, A)
+    for k in range(n):
+        w[k] = limits[k, WEIGHT]
+    for i in range(3):
+        e[i] *= setup[K_R]
+    bounds(limits, q, dt, setup[MARGIN], low, high)
+    for k in range(n):  # the posture is not to be drawn home faster than joints can change their rates
+        soft_low[k] = max(low[k], was[k] - limits[k, CHANGE] * dt)
+        soft_high[k] = min(high[k], was[k] + limits[k, CHANGE] * dt)
+    downhill(limits, q, setup[NULL_GAIN], null)
+
+    s, sigma, joint, why, off_v, off_w = 0.0, 0.0, -1, FINE, 0.0, 0.0
+    for attempt in range(ATTEMPTS):
+        part = 0.0 if attempt == ATTEMPTS - 1 else 0.5**attempt
+        w_c = part * asked[W_C]
+        for i in range(3):
+            u[i], plan[i] = part * asked[U + i], part * asked[PLAN + i]
+            # At scale 1: the base does what it can, and the arm makes up for it.
+            base[i] = reach_for(plan[i], asked[WAS + i], asked[STEP + i])
+        happens(asked, base, slip, real)
+        bearing_rate = (polar[0] * u[1] - polar[1] * u[0]) / polar[2]
+        task_of(T, u[0], u[1], u[2], inside * w_c + (1.0 - inside) * bearing_rate, x)
+        left_by(T, real, hand, polar, inside, e, x_c)
+        s, sigma, joint = fit(A, w, x, x_c, null, low, high, soft_low, soft_high, eps, dq)
+        if s < 1.0:
+            # The whole command is scaled, base included: what the base carries then scales with it.
+            moved_with(asked, plan, real)
+            left_by(T, real, hand, polar, inside, none, x_c)
+            for i in range(m):
+                x[i] += x_c[i]
+            left_by(T, slip, hand, polar, inside, e, x_c)
+            s, sigma, joint = fit(A, w, x, x_c, null, low, high, soft_low, soft_high, eps, dq)
+            s_base = max(s, 0.0)
+            kept = True
+            for i in range(3):
+                base[i] = reach_for(s_base * plan[i], asked[WAS + i], asked[STEP + i])
+                kept = kept and base[i] == s_base * plan[i]
+            happens(asked, base, slip, real)
+            if not kept:  # it cannot change so fast: the arm makes up for what it does
+                task_of(
+                    T, s_base * u[0], s_base * u[1], s_base * u[2],
+                    s_base * (inside * w_c + (1.0 - inside) * bearing_rate), x,
+                )  # fmt: skip
+                left_by(T, real, hand, polar, inside, e, x_c)
+                again, sigma, other = fit(A, w, x, x_c, null, low, high, soft_low, soft_high, eps, dq)
+                if again < 1.0:
+                    joint = other
+                    s = s_base * again if again >= 0.0 else -1.0
+        why = FINE
+        if s < 0.0:
+            s, why = 0.0, STUCK
+        elif s < 1.0 and joint >= 0:
+            why = AT_SPEED if abs(dq[joint]) >= 0.999 * limits[joint, SPEED] else AT_LIMIT
+        fraction = 1.0
+        for k in range(n):
+            change = abs(dq[k] - was[k])
+            if change > limits[k, CHANGE] * dt * (1.0 + SLIGHTLY):
+                fraction = min(fraction, limits[k, CHANGE] * dt / change)
+        if fraction < 1.0:  # all channels go the same part of their way
+            why = CHANGING
+            for k in range(n):
+                dq[k] = max(low[k], min(high[k], was[k] + fraction * (dq[k] - was[k])))
+                dq[k] = reach_for(dq[k], was[k], limits[k, CHANGE] * dt)
+            for i in range(3):
+                base[i] = asked[WAS + i] + fraction * (base[i] - asked[WAS + i])
+            happens(asked, base, slip, real)
+
+        goal(hand, u, s, real, dt, place)
+        bearing_1 = math.atan2(place[1], place[0])
+        f_1 = 0.0
+        if setup[D] > 0.0:
+            turned_by = half_turn(bearing_1 - bearing) + (real[2] - s * w_c) * dt
+            f_1, _ = yielding(half_turn(asked[DELTA] - turned_by), setup[D])
+        yawed(R_home, bearing_1 + f_1, R)
+        rows(held, bearing_1, R, approach, ell, T_1)
+        for k in range(n):
+            q_1[k] = q[k] + dq[k] * dt
+        forward(screws, tip, q_1, hand_1, J_1, places)
+        size = missing(T_1, place, R, hand_1, off, x)
+        if why != CHANGING:
+            if size > SMALL_TURN * ell:
+                for i in range(3, m):
+                    x[i] = 0.0
+            many = 0
+            for k in range(n):
+                free[k] = 1.0 if low[k] + AT_BOUND < dq[k] < high[k] - AT_BOUND else 0.0
+                many += int(free[k])
+            if many < m:
+                for k in range(n):
+                    free[k] = 1.0
+            product(T_1, J_1, A_1)
+            inverse_beside(A_1, w, free, damping_beside(sigma, eps), B)
+            rates(A_1, w, free, B, x, more)
+            for k in range(n):
+                dq[k] = max(low[k], min(high[k], dq[k] + more[k] / dt))
+                dq[k] = reach_for(dq[k], was[k], limits[k, CHANGE] * dt)
+                q_1[k] = q[k] + dq[k] * dt
+            forward(screws, tip, q_1, hand_1, J_1, places)
+            size = missing(T_1, place, R, hand_1, off, x)
+        off_v = math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / dt
+        off_w = size / ell
+        s *= part
+        if why == CHANGING:
+            s *= fraction
+            break
+        if attempt > 0:
+            why = OFF
+        if off_v <= setup[TOL_V]:
+            break
+    for k in range(n):
+        out[k] = dq[k]
+    for i in range(3):
+        out[n + BASE + i] = base[i]
+    if s >= 1.0 and off_w > setup[TOL_W]:
+        why = OFF
+        s = NOT_WHOLE
+    out[n + SCALE], out[n + SIGMA], out[n + JOINT], out[n + WHY] = s, sigma, joint, why
+    out[n + OFF_V], out[n + OFF_W], out[n + YAW] = off_v, off_w, f

@@ -1,0 +1,33 @@
+"""Rotations as nine floats by rows: of the reference and of the hand. Scalar: to be compiled."""
+
+from __future__ import annotations
+
+import math
+
+from overreach.arm.spatial.screws import Array
+
+
+def apart(goal: Array, is_: Array, out: Array) -> float:
+    """Write log(goal is_^T) [rad], along the base's axes, into `out` (3,); return its length. Both are (9,)."""
+    x = y = z = 0.0
+    trace = 0.0
+    for k in range(3):
+        g0, g1, g2 = goal[k], goal[3 + k], goal[6 + k]
+        i0, i1, i2 = is_[k], is_[3 + k], is_[6 + k]
+        x += g2 * i1 - g1 * i2
+        y += g0 * i2 - g2 * i0
+        z += g1 * i0 - g0 * i1
+        trace += g0 * i0 + g1 * i1 + g2 * i2
+    sine = 0.5 * math.sqrt(x * x + y * y + z * z)
+    angle = math.atan2(sine, 0.5 * (trace - 1.0))
+    factor = 0.5 if sine < 1e-9 else 0.5 * angle / sine
+    out[0], out[1], out[2] = factor * x, factor * y, factor * z
+    return angle
+
+
+def yawed(R: Array, yaw: float, out: Array) -> None:
+    """Write Rz(yaw) R, yaw [rad], into `out`; both are (9,)."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    for k in range(3):
+        a, b = R[k], R[3 + k]
+        out[k], out[3 + k], out[6 + k] = c * a - s * b, s * a + c * b, R[6 + k]

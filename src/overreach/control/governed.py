@@ -1,0 +1,91 @@
+"""Limits and residual for an arm that governs: it chooses its joint motions, and keeps the joints' limits by itself."""
+
+from __future__ import annotations
+
+from typing import final
+
+import msgspec
+
+from overreach.arm.chain import Asked, Governing
+from overreach.arm.polar import wrap
+from overreach.control.bounds import Bounds
+from overreach.gate.guard import Guard
+from overreach.law.blend import rise_smoothstep
+from overreach.model.model import Model
+from overreach.model.workspace import Workspace
+from overreach.types import Decision, HandTwist, PolarState, RobotState, Split, Twist
+from overreach.verdicts import Verdict
+
+HELD_BACK = 0.5
+"""The hand is said to be at its height where less than this part of the upward command is left."""
+
+
+def slipped(is_: Twist, asked: tuple[float, ...]) -> Twist:
+    """Return how a base that moves at `is_` deviates from the rates that it was asked for."""
+    return Twist(is_.v_x - asked[0], is_.v_y, w_z=is_.w_z - asked[1])
+
+
+def within_height(u: HandTwist, z: float, space: Workspace, band: float) -> float:
+    """Return u_z [m/s], tapered to 0 over the last `band` [m] before the height that the hand goes towards."""
+    if u.u_z > 0.0:
+        return u.u_z * (1.0 - rise_smoothstep(z - space.z_max + 0.5 * band, band))
+    return u.u_z * (1.0 - rise_smoothstep(space.z_min + 0.5 * band - z, band))
+
+
+@final
+class Governor:
+    """Decides for one robot whose arm governs. Keeps the heading that a yaw fixed in the world comes from."""
+
+    def __init__(self, model: Model, bounds: Bounds, guard: Guard) -> None:
+        self.model = model
+        self._bounds, self._guard = bounds, guard
+        self._heading: float | None = None
+
+    def rest(self) -> None:
+        """Forget the heading: the next motion begins with the one that the hand has then."""
+        self._heading = None
+
+    def decide(
+        self, chain: Governing, state: RobotState, polar: PolarState, u: HandTwist, split: Split, slip: Twist, dt: float
+    ) -> Decision:
+        """Decide for a law's split of `u` at full scale; slip: how the base deviates from what it is asked."""
+        bounds, model, written = self._bounds, self.model, self._guard.written
+        bounds.prepare(dt)
+        u_z = within_height(u, chain.hand[2], model.workspace, model.bands[2]) if u.u_z != 0.0 else 0.0
+        at_height = abs(u_z) < HELD_BACK * abs(u.u_z)
+        if u_z != u.u_z:
+            u = msgspec.structs.replace(u, u_z=u_z)
+        bearing = state.pose.yaw + polar.psi + model.mount.yaw
+        if self._heading is None:
+            self._heading = bearing + chain.heading
+        tops, steps = bounds.tops, bounds.steps
+        worst = max(abs(split.v_b) / tops[0], abs(split.w_b) / tops[1])
+        fast = 1.0 if worst <= 1.0 else 1.0 / worst
+        scale = split.scale * fast
+        step = chain.step(
+            Asked(
+                u=(scale * u.u_r, scale * u.u_t, scale * u.u_z),
+                w_c=scale * u.w_z,
+                delta=wrap(self._heading - bearing),
+                plan=(split.v_b * fast, 0.0, split.w_b * fast),
+                slip=(slip.v_x, slip.v_y, slip.w_z),
+                was=(written[0], 0.0, written[1]),
+                change=(steps[0], 0.0, steps[1]),
+                joints=written[2:],
+                dt=dt,
+            )
+        )
+        scale *= step.scale
+        self._heading += u.w_z * scale * dt
+        verdict = step.verdict
+        if verdict is Verdict.MOVING:
+            if split.verdict is not Verdict.MOVING:
+                verdict = split.verdict
+            elif scale < 1.0:
+                verdict = Verdict.SPEED if fast < 1.0 else Verdict.BESIDE
+            elif at_height:
+                verdict = Verdict.HEIGHT
+        v_b, _, w_b = step.base
+        v_m, w_m, *_ = chain.moved(step.joints)
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale, split.verdict)
+        return Decision(state, polar, u, applied, step.joints, scale, verdict, reason=step.reason)

@@ -1,0 +1,145 @@
+"""Robots by name or by file: a description that ships, a TOML of the user's own, or a model file."""
+
+from __future__ import annotations
+
+import importlib.resources
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import msgspec
+
+from overreach.arm.spatial.arm import SpatialArm
+from overreach.errors import SetupError, UnknownNameError, WorkspaceError
+from overreach.gate.limits import Limits
+from overreach.model.cache import keep, kept
+from overreach.model.described import DescribedRobot
+from overreach.model.description import CommandTable, Description, Measured, check_mode, read_description
+from overreach.model.guessed import guessed, homed
+from overreach.model.measure.measure import SHARE_UP, TURN, Result, expected_speed, fastest, manner_for, measure
+from overreach.model.measure.rank import WORDS
+from overreach.model.model import Model
+from overreach.model.mujoco.robot import Parts, parts_of
+from overreach.model.workspace import Workspace
+
+MODE = "follow"
+"""The mode in which a hand is held if none is asked for."""
+IN_MODE = "#"
+"""Between a robot and the mode in which its hand is held, where both are one text."""
+RAMP = 5.0
+"""The command reaches full deflection in 1/RAMP s."""
+FASTEST = 0.3
+"""A robot whose description does not say more is driven at most this fast [m/s]."""
+MODEL_FILES = (".xml", ".mjcf", ".urdf")
+
+
+def described() -> dict[str, str]:
+    """Return the robots that ship with a description and a model file: name -> TOML text."""
+    folder = importlib.resources.files("overreach.model").joinpath("data")
+    found = {entry.name.removesuffix(".toml"): entry.read_text("utf-8") for entry in folder.iterdir()}
+    return {name: text for name, text in sorted(found.items()) if "\nmodel = " in text}
+
+
+def is_file(which: str) -> bool:
+    """Say whether a robot is named by a file: a TOML or a model."""
+    return which.endswith((".toml", *MODEL_FILES))
+
+
+def description_of(which: str) -> tuple[Description, Path]:
+    """Return the description called `which`, or in the TOML file `which`, and the folder where its paths begin.
+
+    Raises SetupError in one line.
+    """
+    if not is_file(which):
+        texts = described()
+        if which not in texts:
+            raise UnknownNameError("robot", which, texts)
+        return read_description(texts[which], f"robot {which!r}"), Path()
+    path = Path(which)
+    if path.suffix != ".toml":
+        return guessed(path, _say), path.parent
+    try:
+        return read_description(path.read_text("utf-8"), f"robot description {which!r}"), path.parent
+    except (OSError, UnicodeDecodeError) as error:
+        raise SetupError(f"cannot read the robot description {which!r}: {error}") from None
+
+
+def parts_in(description: Description, folder: Path, mode: str) -> Parts:
+    """Return the parts of a robot with its hand held in `mode`; raises SetupError."""
+    check_mode(mode)
+    parts = parts_of(description.in_mode(mode), folder)
+    table = description.command
+    v = expected_speed(parts.arm.manner.reach, parts.base) if table is None else table.v
+    return parts._replace(arm=parts.arm.held(manner_for(parts.arm, mode, v)))
+
+
+def workspace_of(parts: Parts, mode: str, say: Callable[[str], None]) -> Measured:
+    """Return the workspace of a robot: as described if that was measured with this model, else kept, else measured."""
+    shipped = parts.description.workspace.get(mode)
+    if shipped is not None and shipped.model == parts.key:
+        return shipped
+    found = kept(parts.key, mode)
+    if found is None:
+        name = parts.description.name
+        why = "its description has none" if shipped is None else "the one described is of another model"
+        say(f"measuring the workspace of {name} ({mode}): {why}; kept for next time")
+        found = measured(parts).measured
+        keep(found, mode)
+    return found
+
+
+def measured(parts: Parts, coarse: float = 1.0, progress: Callable[[int], None] = lambda _: None) -> Result:
+    """Return the measurement of a robot's workspace; raises WorkspaceError with the reason."""
+    return measure(parts.arm, parts.mount, parts.contacts(), parts.key, coarse, progress, parts.base)
+
+
+def _say(line: str) -> None:
+    print(f"overreach: {line}", file=sys.stderr, flush=True)
+
+
+def command_of(table: CommandTable | None, most: float) -> Limits:
+    """Return full deflection and its ramps: as described, else by the rule, at most `most` [m/s]."""
+    if table is not None:
+        return Limits(table.v, table.w, table.dv, table.dw, table.v_z, table.dv_z)
+    v = round(min(most, FASTEST), 3)
+    up = round(SHARE_UP * v, 3)
+    return Limits(v, TURN, RAMP * v, RAMP * TURN, up, RAMP * up)
+
+
+def fastest_in(parts: Parts, found: Measured) -> float:
+    """Return full deflection v [m/s] for a workspace; see `overreach.model.measure.measure`."""
+    return fastest(parts.arm.manner.reach, found.sigma, found.p_x, parts.base)
+
+
+def robot_of(parts: Parts, mode: str, found: Measured, compiled: bool | None = None) -> DescribedRobot:
+    """Return the robot with its workspace."""
+    held = sum(row for row, word in WORDS.items() if word in found.held)
+    if held != parts.arm.manner.held:
+        raise WorkspaceError(f"[workspace.{mode}] holds {', '.join(found.held)}, which is not what the arm can hold")
+    manner = msgspec.structs.replace(parts.arm.manner, yaw=found.yaw)
+    arm = SpatialArm(parts.arm.channels, parts.arm.screws, parts.arm.tip, parts.arm.home, manner, compiled)
+    description = parts.description
+    command = command_of(description.command, fastest_in(parts, found))
+    space = Workspace(*found.l, *found.psi, *found.z, edges=True)
+    gripper = bool(description.hand.gripper)
+    return DescribedRobot(
+        description.name, description.summary, arm, parts.mount, parts.base, space, command, gripper, mode
+    )
+
+
+@cache
+def load(which: str, mode: str = "") -> Model:
+    """Return the robot called `which`, or in the file `which`; "#MODE" at its end says how its hand is held.
+
+    Raises SetupError in one line. Where its workspace is not known it is measured, which takes seconds.
+    """
+    name, _, own = which.partition(IN_MODE)
+    mode = mode or own or MODE
+    description, folder = description_of(name)
+    if name.endswith(MODEL_FILES):
+        description = homed(description, folder, mode, _say)
+    parts = parts_in(description, folder, mode)
+    for warning in parts.warnings:
+        _say(f"{name}: {warning}")
+    return robot_of(parts, mode, workspace_of(parts, mode, _say))

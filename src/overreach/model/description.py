@@ -1,0 +1,151 @@
+"""The description of a robot that has a model file: what the file does not say, or says wrongly. One TOML beside it.
+
+name, summary     the name under which it is chosen, and one line about it
+model             the model file: a path from the TOML, "menagerie:ROBOT/ENTRY", or "builtin:NAME"
+[base]            kind "differential", body; v_max, w_max, dv_max, dw_max, lag; footprint (length, width)
+[arm]             joints, each a name or several that move together; speed, acceleration of each
+[hand]            body, offset in it [m], approach axis in it; gripper: its joints, if any
+[locked]          joints of the model that stay where they are, with their places: NAME = value
+[mount]           s_x, s_y: the shoulder, by default the first hinge's place; yaw: where the arm's x axis points
+[command]         v, w, v_z, dv, dw, dv_z: full deflection of the stick, and its ramps
+home              the joints where the posture rests; [homes]: other ones, for a mode each
+[workspace.MODE]  what `overreach workspace` measured, for "follow", "fixed", "level" or "free"
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from typing import Any
+
+import msgspec
+
+from overreach.errors import SetupError, UnknownNameError
+from overreach.types import Record
+
+MODES = ("follow", "fixed", "level", "free")
+"""How the hand is held: its yaw follows the bearing; is fixed in the world; is free, with the hand level; all free."""
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
+
+
+class BaseTable(Record, frozen=True):
+    """The table [base]."""
+
+    body: str
+    v_max: float
+    w_max: float
+    dv_max: float
+    dw_max: float
+    footprint: Pair
+    kind: str = "differential"
+    lag: float = 0.0
+    wheels: tuple[str, ...] = ()
+
+
+class ArmTable(Record, frozen=True):
+    """The table [arm]: joints from the base out, a lift among them; speed [rad/s, m/s], acceleration [1/s^2]."""
+
+    joints: tuple[str | tuple[str, ...], ...]
+    speed: tuple[float, ...]
+    acceleration: tuple[float, ...]
+
+    @property
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """Each joint as the joints of the model that move together."""
+        return tuple((one,) if isinstance(one, str) else one for one in self.joints)
+
+
+class HandTable(Record, frozen=True):
+    """The table [hand]."""
+
+    body: str
+    offset: Triple = (0.0, 0.0, 0.0)
+    approach: Triple = (0.0, 0.0, 1.0)
+    gripper: tuple[str, ...] = ()
+
+
+class MountTable(Record, frozen=True):
+    """The table [mount]; what is left out is found in the model."""
+
+    s_x: float | None = None
+    s_y: float | None = None
+    yaw: float = 0.0
+
+
+class CommandTable(Record, frozen=True):
+    """The table [command]: v, v_z [m/s], w [rad/s] at full deflection; dv, dv_z [m/s^2], dw [rad/s^2]."""
+
+    v: float
+    w: float
+    v_z: float
+    dv: float
+    dw: float
+    dv_z: float
+
+
+class Measured(Record, frozen=True):
+    """The table [workspace.MODE]: outer edges of the sector in which every posture was tried.
+
+    l [m], psi [rad], z [m]: from, to; held: the turnings that the hand holds, as words; yaw: greatest deviation of a
+    fixed yaw from the bearing [rad]; sigma: the least singular value there [m/s]; p_x: the least distance [m] of the
+    hand ahead of the base's turning centre; model: hash of the model that was measured.
+    """
+
+    l: Pair
+    psi: Pair
+    z: Pair
+    held: tuple[str, ...]
+    sigma: float
+    p_x: float
+    model: str
+    yaw: float = 0.0
+
+
+class Description(Record, frozen=True):
+    """A robot, as its TOML says; see the module."""
+
+    name: str
+    model: str
+    base: BaseTable
+    arm: ArmTable
+    hand: HandTable
+    home: tuple[float, ...]
+    summary: str = ""
+    mount: MountTable = MountTable()
+    command: CommandTable | None = None
+    locked: dict[str, float] = {}
+    homes: dict[str, tuple[float, ...]] = {}
+    workspace: dict[str, Measured] = {}
+
+    def __post_init__(self) -> None:
+        joints = len(self.arm.joints)
+        for what, values in (("arm.speed", self.arm.speed), ("arm.acceleration", self.arm.acceleration)):
+            if len(values) != joints or not all(math.isfinite(value) and value > 0.0 for value in values):
+                raise SetupError(f"{what} must be a number > 0 for each of the {joints} joints, got {list(values)}")
+        for home in (self.home, *self.homes.values()):
+            if len(home) != joints or not all(map(math.isfinite, home)):
+                raise SetupError(f"home must be a number for each of the {joints} joints, got {list(home)}")
+        if self.base.kind != "differential":
+            raise SetupError(f'base.kind must be "differential", got {self.base.kind!r}')
+        for mode in (*self.workspace, *self.homes):
+            check_mode(mode)
+
+    def in_mode(self, mode: str) -> Description:
+        """Return the description with the home that it has for a mode."""
+        return msgspec.structs.replace(self, home=self.homes.get(mode, self.home), homes={})
+
+
+def check_mode(mode: str) -> None:
+    """Raise UnknownNameError, with the valid ones, unless there is such a mode."""
+    if mode not in MODES:
+        raise UnknownNameError("orientation mode", mode, MODES)
+
+
+def read_description(text: str, what: str = "robot description") -> Description:
+    """Return the description in TOML `text`; raises SetupError that says what is wrong, and where."""
+    try:
+        tables: dict[str, Any] = tomllib.loads(text)
+        return msgspec.convert(tables, Description)
+    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+        raise SetupError(f"{what}: {error}") from None

@@ -1,0 +1,67 @@
+"""What `overreach workspace` does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from overreach.errors import WorkspaceError
+from overreach.files import write_text
+from overreach.model.catalogue import description_of, measured, parts_in
+from overreach.model.measure.figure import draw
+from overreach.model.measure.homes import find_homes, with_home
+from overreach.model.measure.text import drawing, table, with_table
+from overreach.model.mujoco.robot import Parts
+
+SHOWN = 5
+
+
+def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figure: Path | None) -> None:
+    """Measure, draw, print and, where it is asked for, write; raises SetupError with nothing written."""
+    description, folder = description_of(robot)
+    parts = parts_in(description, folder, mode)
+    for warning in parts.warnings:
+        print(f"warning: {warning}")
+    if find_home:
+        parts = _with_best_home(parts)
+    with tqdm(desc="cells tried", unit="", dynamic_ncols=True) as bar:
+        result = measured(parts, progress=lambda more: _count(bar, more))
+    base, found = description.base, result.measured
+    print(f"{description.name}, {mode}: {result.does}\n")
+    print(drawing(result))
+    print()
+    for warning in result.warnings:
+        print(f"warning: {warning}")
+    print(f"full deflection by the rule: v = {result.fastest:.3f} m/s\n")
+    if find_home:
+        print(f"home = {list(parts.description.home)}\n")
+    print(table(found, mode), end="")
+    if figure is not None:
+        draw(result, parts.mount, base.footprint, f"{description.name}, {mode}: {result.does}", figure)
+    if out is not None:
+        before = out.read_text("utf-8") if out.exists() else ""
+        write_text(out, with_table(before, found, mode))
+
+
+def _count(bar: Any, more: int) -> None:
+    bar.update(more)
+
+
+def _with_best_home(parts: Parts) -> Parts:
+    with tqdm(desc="branches measured", unit="", dynamic_ncols=True) as bar:
+
+        def progress(k: int, many: int) -> None:
+            bar.total = many
+            bar.update(k + 1 - bar.n)
+
+        homes = find_homes(parts, lambda q: with_home(parts, q), progress)
+    if not homes:
+        raise WorkspaceError(
+            "no home was found about which there is a sector: is the arm's shoulder where it should be?"
+        )
+    for home in homes[:SHOWN]:
+        print(f"home = {list(home.q)}   # {home.volume:.4f} m^3, coarsely")
+    print()
+    return with_home(parts, homes[0].q)

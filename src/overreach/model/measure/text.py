@@ -1,0 +1,65 @@
+"""A measured workspace in words: the table for a description, and a drawing of its cells from two sides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from overreach.arm.spatial.screws import Array
+from overreach.model.description import Measured
+from overreach.model.measure.measure import Result
+
+INSIDE, REACHED, MISSED = "#", "+", "."
+"""A column of cells: wholly in the sector, reached somewhere, never."""
+
+
+def table(measured: Measured, mode: str) -> str:
+    """Return the table [workspace.MODE]."""
+    lines = [f"[workspace.{mode}]"]
+    for name in ("l", "psi", "z"):
+        low, high = getattr(measured, name)
+        unit = "rad" if name == "psi" else "m"
+        lines.append(f"{name} = [{low:g}, {high:g}]".ljust(37) + f"# [{unit}]")
+    lines.append(f"held = [{', '.join(f'{word!r}' for word in measured.held)}]".replace("'", '"'))
+    if measured.yaw:
+        lines.append(f"yaw = {measured.yaw:g}".ljust(37) + "# [rad]")
+    lines.append(f"sigma = {measured.sigma:g}".ljust(37) + "# [m/s]")
+    lines.append(f"p_x = {measured.p_x:g}".ljust(37) + "# [m]")
+    lines.append(f'model = "{measured.model}"')
+    return "\n".join(lines) + "\n"
+
+
+def with_table(text: str, measured: Measured, mode: str) -> str:
+    """Return the TOML `text` of a description with this table in it, in place of the one it had."""
+    kept, skipping = [], False
+    for line in text.splitlines():
+        if line.startswith("["):
+            skipping = line.strip() == f"[workspace.{mode}]"
+        if not skipping:
+            kept.append(line)
+    body = "\n".join(kept).rstrip()
+    return f"{body}\n\n{table(measured, mode)}" if body else table(measured, mode)
+
+
+def drawing(result: Result) -> str:
+    """Return two pictures of the cells, in letters: psi over l, and z over l."""
+    walked, box = result.walked, result.box
+    inside = np.zeros(walked.ok.shape, bool)
+    inside[tuple(slice(a, b + 1) for a, b in box[:3])] = True
+    top = _picture(np.any(walked.ok, axis=2), np.any(inside, axis=2), walked.psi, "psi [rad]")
+    side = _picture(np.any(walked.ok, axis=1), np.any(inside, axis=1), walked.z, "z [m]")
+    scale = f"l = {walked.l[0]:.2f} to {walked.l[-1]:.2f} m, from left to right"
+    above = f"from above ({INSIDE} in the sector, {REACHED} reached at some height)"
+    return f"{above}\n{top}\n\nfrom the side\n{side}\n{scale}"
+
+
+def _picture(reached: Any, inside: Any, rows: Array, label: str) -> str:
+    lines = [label]
+    for k in range(len(rows) - 1, -1, -1):
+        if reached[:, k].any() or k % 4 == 0:
+            cells = "".join(
+                INSIDE if inside[i, k] else REACHED if reached[i, k] else MISSED for i in range(reached.shape[0])
+            )
+            lines.append(f"{rows[k]:7.2f} {cells}")
+    return "\n".join(lines)

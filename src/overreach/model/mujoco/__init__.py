@@ -1,0 +1,1 @@
+"""Robots from the model files of their makers, MJCF or URDF, through MuJoCo."""

@@ -1,0 +1,104 @@
+"""The screws of an arm, taken once from a compiled model with its joints at zero."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from overreach.arm.mount import Mount
+from overreach.arm.spatial.screws import Array
+from overreach.errors import SetupError
+from overreach.model.description import Description
+
+STRAIGHT = 1e-6
+HINGE, SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+
+
+class Extracted(NamedTuple):
+    """An arm as it is in a model: where it stands, its screws and hand in the arm's frame, its joints' limits."""
+
+    mount: Mount
+    screws: Array
+    tip: Array
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    units: tuple[str, ...]
+
+
+def extract(model: mujoco.MjModel, description: Description) -> Extracted:
+    """Return the arm of `description` in its compiled model; raises SetupError for what is not there."""
+    joints = [[joint_of(model, name) for name in group] for group in description.arm.groups]
+    base, hand = body_of(model, description.base.body, "base.body"), body_of(model, description.hand.body, "hand.body")
+    data = mujoco.MjData(model)
+    data.qpos[:] = model.qpos0
+    lock(model, data, description)
+    for group in joints:
+        for joint in group:
+            data.qpos[model.jnt_qposadr[joint]] = 0.0
+    mujoco.mj_kinematics(model, data)
+    R_b, p_b = data.xmat[base].reshape(3, 3), data.xpos[base]
+    n = len(joints)
+    screws = np.zeros((n, 7))
+    lower, upper, units = [], [], []
+    for k, group in enumerate(joints):
+        first = group[0]
+        slide = int(model.jnt_type[first]) == SLIDE
+        screws[k, :3] = R_b.T @ data.xaxis[first]
+        screws[k, 3:6] = R_b.T @ (data.xanchor[first] - p_b)
+        screws[k, 6] = float(slide)
+        limited = bool(model.jnt_limited[first])
+        least, most = model.jnt_range[first] if limited else (-ENDLESS, ENDLESS)
+        lower.append(float(least) * (len(group) if limited else 1))
+        upper.append(float(most) * (len(group) if limited else 1))
+        units.append("m" if slide else "rad")
+        for other in group[1:]:
+            if float(screws[k, :3] @ (R_b.T @ data.xaxis[other])) < 1.0 - STRAIGHT or not slide:
+                raise SetupError(f"arm.joints: {', '.join(description.arm.groups[k])} do not slide along one axis")
+    hinges = [k for k in range(n) if not screws[k, 6]]
+    if not hinges:
+        raise SetupError("arm.joints: an arm needs at least one hinge")
+    table = description.mount
+    s_x = float(screws[hinges[0], 3]) if table.s_x is None else table.s_x
+    s_y = float(screws[hinges[0], 4]) if table.s_y is None else table.s_y
+    mount = Mount(s_x, s_y, table.yaw)
+    c, s = np.cos(mount.yaw), np.sin(mount.yaw)
+    turn = np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)))  # base axes -> arm axes
+    R_h = data.xmat[hand].reshape(3, 3)
+    p_h = R_b.T @ (data.xpos[hand] + R_h @ np.array(description.hand.offset) - p_b)
+    shift = np.array((s_x, s_y, 0.0))
+    screws[:, :3] = screws[:, :3] @ turn.T
+    screws[:, 3:6] = (screws[:, 3:6] - shift) @ turn.T
+    tip = np.concatenate(((turn @ R_b.T @ R_h).ravel(), turn @ (p_h - shift)))
+    return Extracted(mount, screws, tip, tuple(lower), tuple(upper), tuple(units))
+
+
+ENDLESS = 1e3
+"""Limit of a joint that has none [rad]."""
+
+
+def lock(model: mujoco.MjModel, data: mujoco.MjData, description: Description) -> None:
+    """Put the joints that stay where they are there."""
+    for name, value in description.locked.items():
+        data.qpos[model.jnt_qposadr[joint_of(model, name)]] = value
+
+
+def joint_of(model: mujoco.MjModel, name: str) -> int:
+    """Return the number of the joint called `name`; raises SetupError with the names that there are."""
+    k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
+    if k < 0:
+        names = [model.joint(j).name for j in range(model.njnt)]
+        raise SetupError(f"arm.joints: the model has no joint {name!r}; it has {', '.join(names)}")
+    if int(model.jnt_type[k]) not in (HINGE, SLIDE):
+        raise SetupError(f"arm.joints: {name!r} is neither a hinge nor a slide")
+    return int(k)
+
+
+def body_of(model: mujoco.MjModel, name: str, what: str) -> int:
+    """Return the number of the body called `name`; raises SetupError with the names that there are."""
+    k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+    if k < 0:
+        names = [model.body(j).name for j in range(1, model.nbody)]
+        raise SetupError(f"{what}: the model has no body {name!r}; it has {', '.join(names)}")
+    return int(k)

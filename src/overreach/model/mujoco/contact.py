@@ -1,0 +1,85 @@
+"""Whether an arm touches its own robot: MuJoCo's collisions, in the posture that is asked about."""
+
+from __future__ import annotations
+
+from typing import final
+
+import mujoco
+import numpy as np
+
+from overreach.arm.spatial.screws import Array
+from overreach.model.description import Description
+from overreach.model.mujoco.chain import HINGE, joint_of, lock
+
+ALWAYS = 0.75
+"""Bodies that touch in so many random postures are neighbours that always do."""
+POSTURES = 40
+
+
+@final
+class Contacts:
+    """Which bodies of a robot come closer than `distance` [m], beside those that do at home."""
+
+    def __init__(self, model: mujoco.MjModel, description: Description, distance: float) -> None:
+        self._model, self._data = model, mujoco.MjData(model)
+        lock(model, self._data, description)
+        groups = description.arm.groups
+        self._addresses = [[int(model.jnt_qposadr[joint_of(model, name)]) for name in group] for group in groups]
+        self._moving = self._after_the_first_hinge(groups)
+        self._lower = np.array([model.jnt_range[joint_of(model, group[0])][0] for group in groups])
+        self._upper = np.array([model.jnt_range[joint_of(model, group[0])][1] for group in groups])
+        model.geom_margin[:] = 0.0
+        self._neighbours = self._often()
+        self.at_home = self._pairs(np.array(description.home)) - self._neighbours
+        """Bodies that touch at home, and should not."""
+        model.geom_margin[:] = distance
+        self._usual = self._pairs(np.array(description.home))
+
+    def _after_the_first_hinge(self, groups: tuple[tuple[str, ...], ...]) -> Array:
+        """Say of each body whether it moves with the arm: what only the lift carries may be close to the rest."""
+        model = self._model
+        joints = [joint_of(model, group[0]) for group in groups]
+        first = next(j for j in joints if int(model.jnt_type[j]) == HINGE)
+        root = int(model.jnt_bodyid[first])
+        moving = np.zeros(model.nbody)
+        for body in range(model.nbody):
+            at = body
+            while at > 0 and at != root:
+                at = int(model.body_parentid[at])
+            moving[body] = float(at == root)
+        return moving
+
+    def put(self, q: Array) -> None:
+        """Bring the model to the arm's joints `q`."""
+        for addresses, value in zip(self._addresses, q.tolist(), strict=True):
+            for address in addresses:
+                self._data.qpos[address] = value / len(addresses)
+
+    def _pairs(self, q: Array) -> set[tuple[int, int]]:
+        self.put(q)
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+        if not self._data.ncon:
+            return set()
+        found = set()
+        for one, other in self._model.geom_bodyid[self._data.contact.geom].tolist():
+            if self._moving[one] or self._moving[other]:
+                found.add((min(one, other), max(one, other)))
+        return found
+
+    def _often(self) -> set[tuple[int, int]]:
+        random = np.random.default_rng(0)
+        counts: dict[tuple[int, int], int] = {}
+        for _ in range(POSTURES):
+            q = random.uniform(np.maximum(self._lower, -3.0), np.minimum(self._upper, 3.0))
+            for pair in self._pairs(q):
+                counts[pair] = counts.get(pair, 0) + 1
+        return {pair for pair, count in counts.items() if count >= ALWAYS * POSTURES}
+
+    def touching(self, q: Array) -> set[tuple[int, int]]:
+        """Return the pairs of bodies that are closer than the distance at joints `q`, and are not so at home."""
+        return self._pairs(q) - self._usual
+
+    def names(self, pairs: set[tuple[int, int]]) -> str:
+        """Return pairs of bodies in words."""
+        return ", ".join(f"{self._model.body(a).name} and {self._model.body(b).name}" for a, b in sorted(pairs))

@@ -1,0 +1,243 @@
+"""A first description of a robot, guessed from its model file alone. Each guess is marked as one.
+
+base    the free body, or the root; its wheels the endless hinges whose axis is level, two with one axis
+arm     the longest chain of hinges and slides, neither wheels nor fingers, from the base to a hand
+hand    the body at its end; the fingers' joints beyond it, its gripper
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from overreach.errors import SetupError
+from overreach.files import write_text
+from overreach.model.mujoco.source import compiled, spec_from_file
+
+LEVEL = 0.1
+"""An axis is level, or upright, within this."""
+FINGER = 0.2
+"""A slide with less travel than this [m], at the end of a chain, is a finger's."""
+USUAL_SPEED, USUAL_LIFT = 1.5, 0.1
+"""Joint speeds [rad/s, m/s] where the model has none: to be looked up."""
+ACCELERATION = 8.0
+"""Accelerations are guessed as this many times the speed [1/s^2 per 1/s]."""
+NOT_AN_ARM = ("head", "wheel", "caster", "finger", "gripper", "camera", "neck", "pan_tilt", "leg")
+RIGHT = ("right", "_r_")
+
+
+class Guess(NamedTuple):
+    """What was found: names in the model, and where they were only guessed."""
+
+    base: str
+    wheels: tuple[str, ...]
+    joints: tuple[str, ...]
+    hand: str
+    approach: tuple[float, float, float]
+    gripper: tuple[str, ...]
+    speeds: tuple[tuple[float, bool], ...]
+    footprint: tuple[float, float]
+    chains: tuple[str, ...]
+
+
+def guess(model: mujoco.MjModel, speeds: dict[str, float], what: str) -> Guess:
+    """Return what a model has; raises SetupError where it has no base, or no arm on it."""
+    base = _base(model, what)
+    hinges = [j for j in range(model.njnt) if int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_HINGE)]
+    data = mujoco.MjData(model)
+    data.qpos[:] = model.qpos0
+    mujoco.mj_kinematics(model, data)
+    up = data.xmat[base].reshape(3, 3)[:, 2]
+    endless = [j for j in hinges if not model.jnt_limited[j]]
+    wheels = [
+        j for j in endless
+        if int(model.body_parentid[model.jnt_bodyid[j]]) == base and abs(float(data.xaxis[j] @ up)) < LEVEL
+    ]  # fmt: skip
+    chain, others = _arm(model, base, set(wheels), what)
+    last = int(model.jnt_bodyid[chain[-1]])
+    fingers = [j for j in range(model.njnt) if j not in chain and _above(model, int(model.jnt_bodyid[j]), last)]
+    names = [model.joint(j).name for j in chain]
+    found = []
+    for j, name in zip(chain, names, strict=True):
+        slide = int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        found.append((speeds[name], True) if name in speeds else (USUAL_LIFT if slide else USUAL_SPEED, False))
+    return Guess(
+        base=model.body(base).name,
+        wheels=tuple(model.joint(j).name for j in wheels[:2]),
+        joints=tuple(names),
+        hand=model.body(last).name,
+        approach=_approach(model, data, last),
+        gripper=tuple(model.joint(j).name for j in fingers),
+        speeds=tuple(found),
+        footprint=_footprint(model, data, base),
+        chains=tuple(others),
+    )
+
+
+def _base(model: mujoco.MjModel, what: str) -> int:
+    free = [j for j in range(model.njnt) if int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_FREE)]
+    if free:
+        return int(model.jnt_bodyid[free[0]])
+    roots = [b for b in range(1, model.nbody) if int(model.body_parentid[b]) == 0]
+    carrying = [b for b in roots if any(_above(model, int(model.jnt_bodyid[j]), b) for j in range(model.njnt))]
+    if not carrying:
+        raise SetupError(f"{what} has no base: no body that carries joints")
+    root = carrying[0]
+    for part in ("base_link", "base_footprint"):  # a root may be a bare frame above the base
+        for body in range(1, model.nbody):
+            if part in model.body(body).name and _above(model, body, root):
+                return body
+    return root
+
+
+def _above(model: mujoco.MjModel, body: int, root: int) -> bool:
+    while body > 0:
+        if body == root:
+            return True
+        body = int(model.body_parentid[body])
+    return False
+
+
+def _joints_to(model: mujoco.MjModel, body: int, base: int) -> list[int]:
+    """Return the joints from the base out to a body."""
+    found: list[int] = []
+    while body > 0 and body != base:
+        first, many = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+        found = [*range(first, first + many), *found]
+        body = int(model.body_parentid[body])
+    return found
+
+
+def _arm(model: mujoco.MjModel, base: int, wheels: set[int], what: str) -> tuple[list[int], list[str]]:
+    """Return the joints of the longest chain that looks like an arm, and the names of the ends of the others."""
+    chains: list[tuple[int, list[int]]] = []
+    for body in range(1, model.nbody):
+        if _above(model, body, base) and body not in model.body_parentid:
+            joints = _joints_to(model, body, base)
+            while joints and _is_finger(model, joints[-1]):
+                joints.pop()
+            if len(joints) > 2 and not wheels & set(joints) and not _named(model, joints):
+                chains.append((body, joints))
+    if not chains:
+        raise SetupError(f"{what} has no arm: no chain of three joints or more on the base")
+    longest = max(len(joints) for _, joints in chains)
+    best = [chain for chain in chains if len(chain[1]) == longest]
+    left = [chain for chain in best if not any(mark in model.body(chain[0]).name for mark in RIGHT)]
+    chosen = (left or best)[0][1]
+    ends = {model.body(int(model.jnt_bodyid[joints[-1]])).name for _, joints in chains if joints != chosen}
+    return chosen, sorted(ends)
+
+
+def _is_finger(model: mujoco.MjModel, joint: int) -> bool:
+    slide = int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
+    travel = float(model.jnt_range[joint][1] - model.jnt_range[joint][0])
+    return (slide and travel < FINGER) or any(
+        word in model.joint(joint).name.lower() for word in ("finger", "gripper", "thumb")
+    )
+
+
+def _named(model: mujoco.MjModel, joints: list[int]) -> bool:
+    """Say whether a chain is called something else than an arm."""
+    return any(word in model.joint(joints[-1]).name.lower() for word in NOT_AN_ARM)
+
+
+def _approach(model: mujoco.MjModel, data: mujoco.MjData, hand: int) -> tuple[float, float, float]:
+    """Return the axis of the hand's body along which its fingers, or its own geometry, lie."""
+    points = [data.xpos[b] for b in range(model.nbody) if int(model.body_parentid[b]) == hand]
+    points += [data.geom_xpos[g] for g in range(model.ngeom) if int(model.geom_bodyid[g]) == hand]
+    away = np.mean(points, axis=0) - data.xpos[hand] if points else np.zeros(3)
+    if float(np.linalg.norm(away)) < 1e-3:
+        away = data.xpos[hand] - data.xpos[int(model.body_parentid[hand])]
+    own = data.xmat[hand].reshape(3, 3).T @ away
+    axis = int(np.argmax(np.abs(own)))
+    unit = [0.0, 0.0, 0.0]
+    unit[axis] = math.copysign(1.0, float(own[axis]))
+    return unit[0], unit[1], unit[2]
+
+
+def _footprint(model: mujoco.MjModel, data: mujoco.MjData, base: int) -> tuple[float, float]:
+    half = np.zeros(2)
+    R, p = data.xmat[base].reshape(3, 3), data.xpos[base]
+    for geom in range(model.ngeom):
+        if int(model.geom_bodyid[geom]) == base:
+            at = R.T @ (data.geom_xpos[geom] - p)
+            turn = np.abs(R.T @ data.geom_xmat[geom].reshape(3, 3))
+            reach = np.abs(at) + turn @ (np.abs(model.geom_aabb[geom, :3]) + model.geom_aabb[geom, 3:])
+            half = np.maximum(half, reach[:2])
+    length, width = (2.0 * half).tolist()
+    return (round(length, 2) or 0.5), (round(width, 2) or 0.5)
+
+
+def toml(found: Guess, name: str, model: str, home: tuple[float, ...]) -> str:
+    """Return the description, with each guess marked."""
+    guessed = "# guessed: "
+    speeds = ", ".join(f"{speed:g}" for speed, _ in found.speeds)
+    unknown = [joint for joint, (_, known) in zip(found.joints, found.speeds, strict=True) if not known]
+    note = f"   {guessed}the model has none for {', '.join(unknown)}: look them up" if unknown else ""
+    wheels = ", ".join(f'"{wheel}"' for wheel in found.wheels)
+    times = f"   {guessed}{ACCELERATION:g} times the speed"
+    others = f"   # other chains end at {', '.join(found.chains)}" if found.chains else ""
+    return f"""\
+# A first description, from the model file alone. Look at every line that is marked as guessed.
+name = "{name}"
+summary = ""
+model = "{model}"
+home = [{", ".join(f"{one:g}" for one in home)}]   {guessed}`overreach workspace --find-home` looks for a better one
+
+[base]
+kind = "differential"   {guessed}the only kind so far
+body = "{found.base}"
+wheels = [{wheels}]
+v_max = 0.5   {guessed}[m/s]
+w_max = 1.0   {guessed}[rad/s]
+dv_max = 1.0   {guessed}[m/s^2]
+dw_max = 2.0   {guessed}[rad/s^2]
+footprint = [{found.footprint[0]:g}, {found.footprint[1]:g}]   # length, width [m]
+
+[arm]
+joints = [{", ".join(f'"{joint}"' for joint in found.joints)}]{others}
+speed = [{speeds}]{note}
+acceleration = [{", ".join(f"{ACCELERATION * speed:g}" for speed, _ in found.speeds)}]{times}
+
+[hand]
+body = "{found.hand}"
+offset = [0, 0, 0]   {guessed}where the hand is, in this body [m]
+approach = [{", ".join(f"{one:g}" for one in found.approach)}]   {guessed}where it points, in this body
+gripper = [{", ".join(f'"{joint}"' for joint in found.gripper)}]
+"""
+
+
+def middle(model: mujoco.MjModel, joints: tuple[str, ...]) -> tuple[float, ...]:
+    """Return the middle of each joint's range, 0 where it has none."""
+    values = []
+    for name in joints:
+        j = model.joint(name).id
+        low, high = model.jnt_range[j] if model.jnt_limited[j] else (0.0, 0.0)
+        values.append(round(0.5 * float(low + high), 3) + 0.0)
+    return tuple(values)
+
+
+def describe(path: Path) -> tuple[str, list[str], list[str]]:
+    """Return a first description of the robot in a model file, what was repaired, and the joints without a speed.
+
+    Raises SetupError.
+    """
+    source = spec_from_file(path)
+    model = compiled(source.spec, f"the model file {str(path)!r}")
+    found = guess(model, source.speeds, f"the model file {str(path)!r}")
+    unknown = [joint for joint, (_, known) in zip(found.joints, found.speeds, strict=True) if not known]
+    return toml(found, path.stem, path.name, middle(model, found.joints)), source.warnings, unknown
+
+
+def run_describe(path: Path, out: Path | None) -> None:
+    """Print the description, or write it; raises SetupError with nothing written."""
+    text, warnings, _ = describe(path)
+    for warning in warnings:
+        print(f"# warning: {warning}")
+    print(text, end="")
+    if out is not None:
+        write_text(out, text)

@@ -1,0 +1,267 @@
+"""Arms of any joints in space: kinematics, inverse, limits and the step, in both of its two writings."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from overreach.arm.mount import Mount
+from overreach.arm.spatial import step as layout
+from overreach.arm.spatial import task
+from overreach.arm.spatial.arm import SpatialArm, turned, vector
+from overreach.arm.spatial.inverse import SLIGHT, damping, inverse, rates
+from overreach.arm.spatial.manner import TOL_V
+from overreach.arm.spatial.room import bounds
+from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.turning import apart, yawed
+from overreach.model.catalogue import description_of, parts_in
+from overreach.model.mujoco.chain import joint_of
+from overreach.model.mujoco.robot import Parts
+from overreach.testing.arm import check_arm
+from overreach.types import Channel
+
+ROBOTS = [("mobile7", "follow"), ("mobile7", "fixed"), ("mobile4", "follow")]
+IDS = [f"{name} {mode}" for name, mode in ROBOTS]
+
+
+def parts(name: str, mode: str = "follow") -> Parts:
+    return parts_in(*description_of(name), mode)
+
+
+def both(arm: SpatialArm, change: float = 1.0, far: float = 10.0) -> tuple[SpatialArm, SpatialArm]:
+    """Return the arm compiled and with numpy; joints change their rates `change` times as fast, go `far`."""
+    channels = tuple(
+        Channel(
+            c.name, c.moves, c.unit, c.rate_max, change * c.change_max, max(c.lower, q - far), min(c.upper, q + far)
+        )
+        for c, q in zip(arm.channels, arm.home, strict=True)
+    )
+    one, other = [
+        SpatialArm(channels, arm.screws, arm.tip, arm.home, arm.manner, compiled) for compiled in (True, False)
+    ]
+    return one, other
+
+
+def postures(arm: SpatialArm, many: int, seed: int = 0) -> Array:
+    """Return joints (many, n): anywhere, near those that hold the hand as it is to be held, and at limits."""
+    random = np.random.default_rng(seed)
+    lower, upper, R = arm.limits[:, 0], arm.limits[:, 1], arm.manner.reach
+    q = random.uniform(lower, upper, (many, len(lower)))
+    home = arm.posture_at_home
+    for k in range(many):
+        if k % 3 == 0 and k > 0:
+            continue
+        if k % 200 in (0, 1):
+            l, psi = random.uniform(0.55, 0.95) * R, random.uniform(-1.0, 1.0)
+            held = np.array(arm.posture(l, psi, home.z + random.uniform(-0.3, 0.3) * R))
+        q[k] = np.clip(held + random.normal(0.0, random.choice([0.0, 1e-4, 0.01]), len(lower)), lower, upper)
+        if k % 5 == 0:
+            joint = random.integers(len(lower))
+            q[k, joint] = lower[joint] + 0.021 if random.random() < 0.5 else upper[joint] - 0.021
+    return np.asarray(q)
+
+
+@pytest.mark.parametrize(("name", "mode"), ROBOTS[::2], ids=IDS[::2])
+@pytest.mark.parametrize("compiled", [True, False], ids=["compiled", "numpy"])
+def test_the_kinematics_are_mujoco_s(name: str, mode: str, compiled: bool) -> None:
+    """Pose and Jacobian are those of the robot's own model, to rounding, at any joints."""
+    found = parts(name, mode)
+    model, description = found.model, found.description
+    arm = SpatialArm(found.arm.channels, found.arm.screws, found.arm.tip, found.arm.home, found.arm.manner, compiled)
+    data = mujoco.MjData(model)
+    joints = [joint_of(model, group[0]) for group in description.arm.groups]
+    base, hand = model.body(description.base.body).id, model.body(description.hand.body).id
+    offset = np.array(description.hand.offset)
+    for q in postures(arm, 60):
+        data.qpos[model.jnt_qposadr[joints]] = q
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        R_b, p_b = data.xmat[base].reshape(3, 3), data.xpos[base]
+        R_h = data.xmat[hand].reshape(3, 3)
+        p_h = data.xpos[hand] + R_h @ offset
+        linear, angular = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, linear, angular, p_h, hand)
+        columns = model.jnt_dofadr[joints]
+        chain = arm.at(tuple(q.tolist()), found.mount)
+        assert np.abs(np.array(chain.hand) - R_b.T @ (p_h - p_b)).max() < 1e-12
+        assert np.abs(chain.attitude - R_b.T @ R_h).max() < 1e-12
+        assert np.abs(chain.J[:3] - R_b.T @ linear[:, columns]).max() < 1e-12  # the arm's axes are the base's here
+        assert np.abs(chain.J[3:] - R_b.T @ angular[:, columns]).max() < 1e-12
+
+
+@pytest.mark.parametrize(("name", "mode"), ROBOTS, ids=IDS)
+def test_they_conform(name: str, mode: str) -> None:
+    """They keep all the promises of an arm."""
+    arm = parts(name, mode).arm
+    R = arm.manner.reach
+    samples = [arm.posture(l * R, psi) for l in (0.65, 0.8) for psi in (-0.6, 0.0, 0.4)]
+    for mount in (Mount(), Mount(0.2, -0.1, 0.3)):
+        check_arm(arm, samples, mount)
+
+
+def asked_at_random(random: np.random.Generator, arm: SpatialArm) -> tuple[Array, Array]:
+    """Return what a step may be asked, and the joint rates before it."""
+    n = len(arm.channels)
+    size = random.choice([0.1, 1.0, 4.0, 20.0])
+    asked = np.zeros(layout.ASKED)
+    asked[layout.U : layout.U + 3] = random.normal(0.0, 0.1 * size, 3)
+    asked[layout.W_C] = random.normal(0.0, 0.3)
+    asked[layout.DELTA] = random.uniform(-math.pi, math.pi) * (random.random() < 0.5)
+    asked[layout.PLAN : layout.PLAN + 3] = random.normal(0.0, 0.2 * size, 3) * (1.0, random.random() < 0.2, 1.0)
+    asked[layout.SLIP : layout.SLIP + 3] = random.normal(0.0, 0.02, 3) * (random.random() < 0.3)
+    asked[layout.WAS : layout.WAS + 3] = asked[layout.PLAN : layout.PLAN + 3] + random.normal(0.0, 0.02, 3)
+    asked[layout.STEP : layout.STEP + 3] = (0.015, 0.015, 0.04)
+    asked[layout.DT] = random.choice([0.005, 0.01])
+    asked[layout.S_X :] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
+    return asked, random.normal(0.0, 0.3, n) * (random.random() < 0.7)
+
+
+def turned_to(arm: SpatialArm, hand: Array) -> Array:
+    """Return the attitude (9,) that a hand is to have where it is."""
+    R = np.empty(9)
+    yawed(arm.R_home.ravel(), math.atan2(hand[10], hand[9]), R)
+    return R
+
+
+@pytest.mark.parametrize(("name", "mode"), ROBOTS, ids=IDS)
+def test_the_two_writings_agree(name: str, mode: str) -> None:
+    """Compiled and numpy, kinematics and step are equal to 1e-9 on 10,000 states, whatever limits them."""
+    seen: Counter[int] = Counter()
+    ties = 0
+    for change, far, many in ((1.0, 10.0, 3000), (1000.0, 10.0, 4000), (1000.0, 0.3, 4000)):
+        one, other = both(parts(name, mode).arm, change, far)
+        n = len(one.channels)
+        random = np.random.default_rng(1)
+        for q in postures(one, many):
+            poses = [(np.empty(12), np.empty((6, n)), np.empty((n, 3))) for _ in range(2)]
+            one.engine.forward(q, *poses[0])
+            other.engine.forward(q, *poses[1])
+            assert max(np.abs(a - b).max() for a, b in zip(*poses, strict=True)) < 1e-12
+            if apart(turned_to(one, poses[0][0]), poses[0][0], np.empty(3)) > 3.0:
+                continue  # half a turn has no direction
+            asked, was = asked_at_random(random, one)
+            outs = np.empty(n + layout.DONE), np.empty(n + layout.DONE)
+            one.engine.step(q, poses[0][0], poses[0][1], was, asked, outs[0])
+            other.engine.step(q, poses[0][0], poses[0][1], was, asked, outs[1])
+            assert np.isfinite(outs[0]).all()
+            if outs[0][n + layout.JOINT] != outs[1][n + layout.JOINT]:  # two joints limit alike: either may be named
+                ties += 1
+                for one_of in (layout.JOINT, layout.WHY):
+                    outs[0][n + one_of] = outs[1][n + one_of]
+            apart_by = 1e-6 if outs[0][n + layout.WHY] == layout.OFF else 1e-9  # far off, where the arm is singular
+            assert np.abs(outs[0] - outs[1]).max() < apart_by, (q.tolist(), asked.tolist(), was.tolist(), outs)
+            seen[int(outs[0][n + layout.WHY])] += 1
+    assert ties < 10
+    assert min(seen[why] for why in (layout.FINE, layout.AT_LIMIT, layout.AT_SPEED, layout.CHANGING)) > 10, seen
+
+
+@pytest.mark.parametrize(("name", "mode"), ROBOTS, ids=IDS)
+def test_a_step_ends_where_it_should_or_says_that_it_does_not(name: str, mode: str) -> None:
+    """Never is a step whose scale is 1 off by more than the tolerance; no rate passes a speed, no joint its margin."""
+    arm = both(parts(name, mode).arm, 1000.0)[0]
+    n, random, whole = len(arm.channels), np.random.default_rng(2), 0
+    for q in postures(arm, 3000, 3):
+        chain = arm.at(tuple(q.tolist()), Mount(0.1, 0.05, 0.2))
+        asked, was = asked_at_random(random, arm)
+        out = np.empty(n + layout.DONE)
+        arm.engine.step(q, chain.pose, chain.J, was, asked, out)
+        dt = asked[layout.DT]
+        after = q + out[:n] * dt
+        speed, lower, upper = arm.limits[:, 2], arm.limits[:, 0], arm.limits[:, 1]
+        assert (np.abs(out[:n]) <= speed * (1.0 + 1e-9)).all()
+        inside = (q >= lower + 0.02) & (q <= upper - 0.02)
+        assert (after[inside] >= (lower + 0.02)[inside] - 1e-9).all()
+        assert (after[inside] <= (upper - 0.02)[inside] + 1e-9).all()
+        if out[n + layout.SCALE] >= 1.0:
+            whole += 1
+            base = out[n : n + 3] + asked[layout.SLIP : layout.SLIP + 3]
+            end = arm.at(tuple(after.tolist()), Mount())
+            goal = where(chain.pose[9:], asked[layout.U : layout.U + 3], base, dt)
+            assert np.abs(end.pose[9:] - goal).max() <= TOL_V * arm.manner.reach * dt * (1.0 + 1e-6)
+    assert whole > 200
+
+
+def where(hand: Array, u: Array, base: Array, dt: float) -> Array:
+    """Return where u takes the hand, seen from where the base twist has taken the arm: by many small steps."""
+    c, s = math.cos(0.2), math.sin(0.2)
+    v_x, v_y = base[0] - base[2] * 0.05, base[1] + base[2] * 0.1
+    v, w = np.array((c * v_x + s * v_y, c * v_y - s * v_x)), base[2]
+    place, heading, many = np.zeros(2), 0.0, 400
+    for _ in range(many):
+        middle = heading + 0.5 * w * dt / many
+        turn = np.array(((math.cos(middle), -math.sin(middle)), (math.sin(middle), math.cos(middle))))
+        place, heading = place + turn @ v * dt / many, heading + w * dt / many
+    turn = np.array(((math.cos(heading), -math.sin(heading)), (math.sin(heading), math.cos(heading))))
+    goal = turn.T @ (hand[:2] + u[:2] * dt - place)
+    return np.array((*goal, hand[2] + u[2] * dt))
+
+
+def test_the_inverse_is_the_damped_weighted_one() -> None:
+    """Rates are w A^T (A w A^T + lambda^2)^-1 x, undamped they give x; sigma is the least of A sqrt(w)."""
+    random = np.random.default_rng(0)
+    for _ in range(200):
+        m, n = 6, 8
+        A = random.normal(0.0, 1.0, (m, n))
+        A[0] *= random.choice([1.0, 0.05])
+        w, free, x = random.uniform(0.5, 2.0, n), np.ones(n), random.normal(0.0, 1.0, m)
+        B, out = np.empty((m, m)), np.empty(n)
+        sigma = inverse(A, w, free, 0.1, B)
+        rates(A, w, free, B, x, out)
+        true = np.linalg.svd(A * np.sqrt(w), compute_uv=False)[-1]
+        if sigma < 0.1:  # where it matters; elsewhere it is at most the true one, and surely enough
+            assert sigma == pytest.approx(true, rel=0.02)
+            assert sigma >= true * (1.0 - 1e-9)
+        else:
+            assert sigma <= true * (1.0 + 1e-9) or sigma == pytest.approx(true, rel=0.02)
+        lam2 = damping(sigma, 0.1) + SLIGHT * float(np.trace((A * w) @ A.T))
+        assert out == pytest.approx(
+            w * (A.T @ np.linalg.solve((A * w) @ A.T + lam2 * np.eye(m), x)), rel=1e-6, abs=1e-9
+        )
+        if sigma >= 0.1:
+            assert A @ out == pytest.approx(x, abs=1e-8)
+
+
+@given(
+    start=st.floats(-1.0, 1.0), wanted=st.lists(st.floats(-5.0, 5.0), min_size=1, max_size=60),
+    dt=st.sampled_from([0.001, 0.005, 0.01, 0.02]), braking=st.floats(0.5, 20.0), speed=st.floats(0.1, 5.0),
+)  # fmt: skip
+def test_a_joint_within_its_bounds_can_always_stop(
+    start: float, wanted: list[float], dt: float, braking: float, speed: float
+) -> None:
+    """Whatever rates are wanted, held to the bounds: the joint keeps its margin, and braking keeps it in them."""
+    limits = np.array([[-1.1, 1.1, speed, braking, 2.0 * braking, 0.0, 1.0]])
+    q, low, high, rate = np.array([start]), np.empty(1), np.empty(1), 0.0
+    for one in wanted:
+        bounds(limits, q, dt, 0.02, low, high)
+        slowed = rate - math.copysign(min(abs(rate), braking * dt), rate)
+        assert low[0] - 1e-9 <= slowed <= high[0] + 1e-9
+        rate = max(low[0], min(high[0], one))
+        q = q + rate * dt
+        assert -1.08 - 1e-9 <= q[0] <= 1.08 + 1e-9
+
+
+@given(wanted=st.floats(-math.pi, math.pi), most=st.floats(0.1, 1.5))
+def test_a_fixed_yaw_yields_smoothly(wanted: float, most: float) -> None:
+    """f is what is wanted near the bearing, at most D, continuous with the slope it says, and 0 at half a turn."""
+    f, slope = task.yielding(wanted, most)
+    assert abs(f) <= most + 1e-12
+    if abs(wanted) <= 0.8 * most:
+        assert (f, slope) == (wanted, 1.0)
+    h = 1e-6
+    if abs(wanted) < math.pi - h:
+        ahead, behind = task.yielding(wanted + h, most)[0], task.yielding(wanted - h, most)[0]
+        assert (ahead - behind) / (2.0 * h) == pytest.approx(slope, abs=1e-3)
+    assert task.yielding(math.pi, most)[0] == pytest.approx(0.0, abs=1e-12)
+    assert task.yielding(task.wanted(f, most), most)[0] == pytest.approx(f, abs=1e-7)
+
+
+@given(w=st.tuples(*[st.floats(-1.7, 1.7)] * 3))
+def test_rotation_vectors(w: tuple[float, float, float]) -> None:
+    """The logarithm undoes the exponential."""
+    assert vector(turned(np.array(w))) == pytest.approx(w, abs=1e-9)
