@@ -21,7 +21,7 @@ from overreach.link.endpoint import free_port
 from overreach.link.messages import ConfigureRequest
 from overreach.requests import ResetRequest, RestartRequest, StopRequest
 from tests.browser.chromium import chromium
-from tests.processes import half, robot
+from tests.processes import half, robot, until
 
 WARM_S = 60.0
 GROWTH_MIB = 2.0
@@ -85,6 +85,7 @@ def main() -> None:
                     looked = time.monotonic()
                     for name, process in watched.items():
                         samples[name].append((round(now, 2), round(uss(process), 3)))
+            until(lambda: len(observer.states) > 0, what="a last state")
             overruns = observer.now.overruns
     commit = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
     after = {name: [one for one in each if one[0] >= min(WARM_S, seconds / 2)] for name, each in samples.items()}
