@@ -133,7 +133,8 @@ class Governing(Chain, Protocol):
 class Arm(Protocol):
     """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`).
 
-    One that has joint motions to choose from says `governs = True`: its chains are then `Governing`.
+    One that has joint motions to choose from says `governs = True`: its chains are then `Governing`. One that does not
+    carry out every part of a twist for which it has a row says in `follows` which of v_z, w_x, w_y it does.
     """
 
     @property

@@ -63,7 +63,7 @@ class Found(Record, frozen=True):
 
 @cache
 def _robot(which: str) -> tuple[DescribedRobot, Contacts]:
-    model = load(which)
+    model = load.__wrapped__(which)  # anew: with compiled code, if that has been made since
     if not isinstance(model, DescribedRobot):
         raise SetupError(f"{which!r} is not a robot in space: there is nothing to check")
     name, _, mode = which.partition(IN_MODE)

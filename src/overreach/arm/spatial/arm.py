@@ -64,6 +64,8 @@ class SpatialArm:
         return SpatialArm(self.channels, self.screws, self.tip, self.home, manner, self._compiled)
 
     governs = True
+    follows = frozenset({"v_z"})
+    """Parts of a twist beyond the plane that its step carries out; attitudes are held, not yet turned by command."""
 
     @property
     def rows(self) -> tuple[int, ...]:

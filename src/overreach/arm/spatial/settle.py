@@ -26,6 +26,7 @@ STRIDE = 0.5
 """Greatest move [rad, m] of a joint towards the place in one iteration: less, and far places are missed."""
 ROOM = 0.03
 """Postures keep so far [rad, m] from the joints' limits."""
+AT_BOUND = 1e-6
 WALK, REST = 3, 25
 """Iterations on the way to a place, and at most there."""
 CLOSE, AT_REST = 1e-5, 2e-3
@@ -44,7 +45,7 @@ class Places(NamedTuple):
 
 
 class Settled(NamedTuple):
-    """Postures (B, n); how far off the task they are [m], their least singular values [m/s]."""
+    """Postures (B, n), how far off the task they are [m], their least singular values [m/s], joints at limits aside."""
 
     q: Array
     off: Array
@@ -155,7 +156,18 @@ class Posture:
             busy = busy[~done]
             if not len(busy):
                 break
+        held = (q <= self._low + AT_BOUND) | (q >= self._high - AT_BOUND)
+        some = np.flatnonzero(held.any(axis=1))
+        if len(some):
+            sigma[some] = self._without(q[some], held[some], end.psi[some], end.yaw[some])
         return Settled(q, off, sigma)
+
+    def _without(self, q: Array, held: Array, psi: Array, yaw: Array) -> Array:
+        """Return the least singular values [m/s] of postures of which some joints are held at a limit."""
+        _, _, J = self.forward(q)
+        A = self._rows(psi, _yaw(psi + yaw) @ self.R_home) @ J
+        values = np.linalg.eigvalsh((A * np.where(held, 0.0, self._w)[:, None, :]) @ A.transpose(0, 2, 1))
+        return np.asarray(np.sqrt(np.maximum(values[:, 0], 0.0)))
 
     def _slope(self, q: Array) -> Array:
         """Return the gradient of the potential at postures `q`."""

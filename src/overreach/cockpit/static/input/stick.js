@@ -88,10 +88,15 @@ export class Stick {
 
   // Move up or down, beside whatever moves the hand along the ground, or alone; returns whether that was allowed.
   lift(lifter, z) {
-    if (!this.held && !this.press(lifter, 0, 0, false)) return false;
+    const alone = !this.held;
     this.lifter = lifter;
     this.z = Math.max(-1, Math.min(1, z));
-    this.say();
+    if (!alone) this.say();
+    else if (!this.press(lifter, 0, 0, false)) {
+      this.lifter = null;
+      this.z = 0;
+      return false;
+    }
     return true;
   }
 
