@@ -48,8 +48,9 @@ class Fingers:
     def lift(self, *fingers: int) -> None:
         """Take fingers away, all where none is named."""
         for finger in fingers or tuple(self._down):
-            self._down.pop(finger, None)
-            self._tell("touchEnd")
+            x, y = self._down.pop(finger)
+            end = {"type": "touchEnd", "touchPoints": [{"x": x, "y": y, "id": finger}]}  # an end lists what ends
+            self._session.send("Input.dispatchTouchEvent", end)
 
     def scale(self, factor: float) -> None:
         """Zoom the page, as two fingers do."""

@@ -112,7 +112,7 @@ export class Stick {
   // Let go. doubt: why, where it was not the operator's own doing. Whoever still moves it up or down then holds alone.
   release(holder = this.holder, doubt = "") {
     if (this.holder === null || this.holder !== holder) return;
-    const others = arguments.length === 1 && this.lifter !== null && this.lifter !== holder;
+    const others = arguments.length > 0 && !doubt && this.lifter !== null && this.lifter !== holder;
     this.x = this.y = 0;
     if (others) {
       this.holder = this.lifter;
