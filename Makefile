@@ -21,6 +21,7 @@ reproduce: $(VENV)/.ready-all
 venv: $(VENV)/.ready
 
 # What measures time has the machine to itself; the others run side by side.
+test: export OPENBLAS_NUM_THREADS = 1
 test: $(VENV)/.ready-dev browser lint types
 	$(BIN)/python -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder -m "not real_time"
 	$(BIN)/python -m pytest -q -m real_time

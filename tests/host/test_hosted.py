@@ -43,6 +43,7 @@ def read(robot: Hosted) -> None:
     until(there, what="a state")
 
 
+@pytest.mark.real_time
 def test_a_hosted_robot_conforms() -> None:
     """From outside it is a robot like any other, in real time, and its model is the robot's."""
     robots = []
