@@ -107,19 +107,15 @@ def test_floods(what: str, reached: Reached) -> None:
                 p99, most, moved, paused = apart(observer, driver, seconds)
                 machine = beside.communicate()[0].strip()
             assert moved > 0.5 or what == "stop"  # nobody's messages crowd out those of who drives
-            took, again_asked = [], 0
+            took = []
             for _ in range(5):
                 begun = time.monotonic()
-                # Who reads too late is cut off, and its answer with it, as a page's may be: it asks again.
-                while observer.link.request(ResetRequest()) != Accepted():
-                    again_asked += 1
-                    assert time.monotonic() - begun < GENEROUS_S
+                assert observer.link.request(ResetRequest()) == Accepted()
                 took.append(time.monotonic() - begun)
             stop = stopped(observer)
         assert statistics.median(p99) < 2.0
         assert statistics.median(most) < 10.0
-        assert statistics.median(took) < 1.0
-        assert again_asked <= 1
+        assert max(took) < 1.0
         assert stop < 0.3 + NOISE_S
         again(driver)
         driver.drive(0.5)

@@ -21,6 +21,8 @@ ACCEPT_MS = 3000
 """... for at most this long [ms]."""
 WAIT_US = 1000
 """A peer that takes no answers holds up who gives them by at most this long [us]: then it is cut off."""
+ANSWERS_WAIT = 8
+"""So many answers of a kind may wait for a peer: of fewer, a moment in which none is sent would cut it off."""
 REQUESTS_HZ = 200.0
 """Requests of one peer that come sooner after each other than this often are not looked at."""
 
@@ -74,6 +76,8 @@ def open_session(listen: str | None = None, connect: str | None = None, seldom: 
     }
     if listen:
         settings["transport/link/tx/queue/congestion_control/block/wait_before_close"] = WAIT_US
+        settings["transport/link/tx/queue/size/real_time"] = ANSWERS_WAIT
+        settings["transport/link/tx/queue/size/data"] = ANSWERS_WAIT
     if seldom:
         rules = [{"key_expr": key, "freq": REQUESTS_HZ} for key in seldom]
         settings["downsampling"] = [{"id": "seldom", "flows": ["ingress"], "messages": ["query"], "rules": rules}]
