@@ -62,7 +62,7 @@ def compile_all(functions: Sequence[Callable[..., Any]]) -> list[Callable[..., A
     made: dict[FunctionType, Any] = {}
     for function in found:
         _compile(function, found, made, numba.njit)
-    return [made[function] for function in functions]  # type: ignore[index]
+    return [made[function] for function in functions]  # type: ignore[index]  # they are plain functions
 
 
 def _gather(function: Any, found: dict[FunctionType, FunctionType]) -> None:

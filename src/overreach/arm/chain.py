@@ -130,6 +130,11 @@ class Governing(Chain, Protocol):
         ...
 
 
+def governs(arm: Arm) -> bool:
+    """Say whether an arm's chains are `Governing`."""
+    return bool(getattr(arm, "governs", False))
+
+
 class Arm(Protocol):
     """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`).
 

@@ -27,7 +27,7 @@ from overreach.control.tick import Tick
 from overreach.errors import SetupError
 from overreach.extras import require
 from overreach.law.laws import Exact, usual_blend
-from overreach.model.catalogue import IN_MODE, MODE, description_of, parts_in
+from overreach.model.catalogue import parts_for
 from overreach.model.described import DescribedRobot
 from overreach.plugs import load_model
 
@@ -57,8 +57,8 @@ class _Listening:
     """An engine that keeps what it is given."""
 
     def __init__(self, engine: Any) -> None:
-        self._engine, self.met = engine, []  # type: ignore[var-annotated]
-        self.forward = engine.forward
+        self._engine, self.forward = engine, engine.forward
+        self.met: list[Met] = []
 
     def step(self, q: Array, hand: Array, J: Array, was: Array, asked: Array, out: Array) -> None:
         x, y = hand[9:11].tolist()
@@ -85,8 +85,7 @@ def met_by(model: DescribedRobot) -> list[Met]:
     model.arm.engine = listening
     drive(model, stream("smooth", SEED, 0, model.command))
     model.arm.engine = listening._engine
-    met: list[Met] = listening.met
-    return met[100 :: max(1, len(met) // DISTINCT)][:DISTINCT]
+    return listening.met[100 :: max(1, len(listening.met) // DISTINCT)][:DISTINCT]
 
 
 def step_of(model: DescribedRobot) -> Callable[[Met], None]:
@@ -129,8 +128,7 @@ def measure(robot: str, rounds: int = ROUNDS, tell: Callable[[int], object] = la
     model = load_model(robot)
     if not isinstance(model, DescribedRobot):
         raise SetupError(f"{robot!r} moves in the plane: `overreach bench` is for it")
-    name, _, mode = robot.partition(IN_MODE)
-    parts = parts_in(*description_of(name), mode or MODE)
+    parts = parts_for(robot)
     fast, lean = with_engine(model, True), with_engine(model, False)
     met = met_by(fast)
     given = [(one,) for one in met]

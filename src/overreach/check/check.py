@@ -16,7 +16,7 @@ from overreach.check.driven import drive
 from overreach.check.judge import Judged, judge
 from overreach.check.streams import DT_S, stream
 from overreach.errors import SetupError
-from overreach.model.catalogue import IN_MODE, MODE, description_of, load, parts_in
+from overreach.model.catalogue import load, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.mujoco.contact import Contacts
 from overreach.types import Record
@@ -66,9 +66,7 @@ def _robot(which: str) -> tuple[DescribedRobot, Contacts]:
     model = load.__wrapped__(which)  # anew: with compiled code, if that has been made since
     if not isinstance(model, DescribedRobot):
         raise SetupError(f"{which!r} is not a robot in space: there is nothing to check")
-    name, _, mode = which.partition(IN_MODE)
-    parts = parts_in(*description_of(name), mode or MODE)
-    return model, parts.contacts(HALF_DISTANCE)
+    return model, parts_for(which).contacts(HALF_DISTANCE)
 
 
 HALF_DISTANCE = 0.5

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from overreach.arm.spatial.screws import Array
-from overreach.model.catalogue import IN_MODE, MODE, description_of, load, parts_in
+from overreach.model.catalogue import load, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.measure.rank import sentence
 from overreach.model.mujoco.robot import Parts
@@ -26,8 +26,7 @@ SLOW, FAST = 0.05, 10.0
 
 def facts(which: str) -> list[str]:
     """Return lines on what was found of a robot, and what looks wrong. Raises SetupError."""
-    name, _, mode = which.partition(IN_MODE)
-    parts = parts_in(*description_of(name), mode or MODE)
+    parts = parts_for(which)
     model = load(which)
     assert isinstance(model, DescribedRobot)
     arm, space = model.arm, model.workspace

@@ -10,6 +10,7 @@ import numpy as np
 from overreach.arm.spatial import task
 from overreach.arm.spatial.manner import TOL_W
 from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.turning import apart, yawed
 from overreach.check.driven import Driven
 from overreach.check.streams import DT_S
 from overreach.model.described import DescribedRobot
@@ -85,25 +86,20 @@ def in_world(model: DescribedRobot, base: Array, p: Array) -> tuple[Array, Array
 def _turned_off(model: DescribedRobot, driven: Driven, R: Array, psi: Array) -> Array:
     """Return how far [rad] the turnings that are held are off, at each state."""
     arm = model.arm
-    manner, R_home = arm.manner, arm.R_home
+    manner, R_home = arm.manner, arm.R_home.ravel()
     bearing = np.unwrap(driven.base[:, 2] + psi)
     heading = bearing[0] + np.concatenate(([0.0], np.cumsum(driven.w * driven.scale) * DT_S))
     off = np.empty(len(R))
     T = np.empty((task.count(manner.held), 6))
-    approach = np.array(manner.approach)
+    approach, goal, e = np.array(manner.approach), np.empty(9), np.empty(3)
     for k in range(len(R)):
         f = 0.0
         if manner.yaw > 0.0:
             delta = float((heading[k] - bearing[k] + np.pi) % (2.0 * np.pi) - np.pi)
             f, _ = task.yielding(delta, manner.yaw)
-        yaw = psi[k] + f
-        c, s = np.cos(yaw), np.sin(yaw)
-        goal = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))) @ R_home
-        M = goal @ R[k].T
-        e = np.array((M[2, 1] - M[1, 2], M[0, 2] - M[2, 0], M[1, 0] - M[0, 1])) * 0.5
-        size = np.linalg.norm(e)
-        e *= np.arctan2(size, 0.5 * (M[0, 0] + M[1, 1] + M[2, 2] - 1.0)) / size if size > 1e-9 else 1.0
-        task.rows(manner.held, psi[k], goal.ravel(), approach, 1.0, T)
+        yawed(R_home, psi[k] + f, goal)
+        apart(goal, R[k].ravel(), e)
+        task.rows(manner.held, psi[k], goal, approach, 1.0, T)
         off[k] = np.linalg.norm(T[3:, 3:] @ e)
     return off
 

@@ -9,7 +9,7 @@ from typing import cast
 import msgspec
 from msgspec.structs import astuple
 
-from overreach.arm.chain import NO_REST, Chain, Governing, Rest
+from overreach.arm.chain import NO_REST, Chain, Governing, Rest, governs
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
 from overreach.control.governed import Governor, slipped
@@ -45,7 +45,7 @@ class HandController:
         self._arm, self._mount = model.arm, model.mount.three
         self._still = (0.0,) * len(model.arm.channels)
         self._beyond = any(row > 1 for row in model.arm.rows)
-        self._governs = bool(getattr(model.arm, "governs", False))
+        self._governs = governs(model.arm)
         self.guard = Guard(all_of_them, ramp_s)
         self._bounds = self._bounded(model)
         self._governor = Governor(model, self._bounds, self.guard)

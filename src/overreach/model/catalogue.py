@@ -74,6 +74,21 @@ def parts_in(description: Description, folder: Path, mode: str) -> Parts:
     return parts._replace(arm=parts.arm.held(manner_for(parts.arm, mode, v)))
 
 
+def parted(which: str, mode: str = "") -> tuple[str, str]:
+    """Return a robot's name or file, and how its hand is held: `mode`, what stands in the text, or MODE."""
+    name, _, own = which.partition(IN_MODE)
+    return name, mode or own or MODE
+
+
+def parts_for(which: str, mode: str = "") -> Parts:
+    """Return the parts of the robot called `which`, or in the file `which`; a model file's home is looked for first."""
+    name, mode = parted(which, mode)
+    description, folder = description_of(name)
+    if name.endswith(MODEL_FILES):
+        description = homed(description, folder, mode, _say)
+    return parts_in(description, folder, mode)
+
+
 def workspace_of(parts: Parts, mode: str, say: Callable[[str], None]) -> Measured:
     """Return the workspace of a robot: as described if that was measured with this model, else kept, else measured."""
     shipped = parts.description.workspace.get(mode)
@@ -89,9 +104,9 @@ def workspace_of(parts: Parts, mode: str, say: Callable[[str], None]) -> Measure
     return found
 
 
-def measured(parts: Parts, coarse: float = 1.0, progress: Callable[[int], None] = lambda _: None) -> Result:
+def measured(parts: Parts, progress: Callable[[int], None] = lambda _: None) -> Result:
     """Return the measurement of a robot's workspace; raises WorkspaceError with the reason."""
-    return measure(parts.arm, parts.mount, parts.contacts(), parts.key, coarse, progress, parts.base)
+    return measure(parts.arm, parts.mount, parts.contacts(), parts.key, 1.0, progress, parts.base)
 
 
 def _say(line: str) -> None:
@@ -107,20 +122,15 @@ def command_of(table: CommandTable | None, most: float) -> Limits:
     return Limits(v, TURN, RAMP * v, RAMP * TURN, up, RAMP * up)
 
 
-def fastest_in(parts: Parts, found: Measured) -> float:
-    """Return full deflection v [m/s] for a workspace; see `overreach.model.measure.measure`."""
-    return fastest(parts.arm.manner.reach, found.sigma, found.p_x, parts.base)
-
-
-def robot_of(parts: Parts, mode: str, found: Measured, compiled: bool | None = None) -> DescribedRobot:
+def robot_of(parts: Parts, mode: str, found: Measured) -> DescribedRobot:
     """Return the robot with its workspace."""
     held = sum(row for row, word in WORDS.items() if word in found.held)
     if held != parts.arm.manner.held:
         raise WorkspaceError(f"[workspace.{mode}] holds {', '.join(found.held)}, which is not what the arm can hold")
     manner = msgspec.structs.replace(parts.arm.manner, yaw=found.yaw)
-    arm = SpatialArm(parts.arm.channels, parts.arm.screws, parts.arm.tip, parts.arm.home, manner, compiled)
+    arm = SpatialArm(parts.arm.channels, parts.arm.screws, parts.arm.tip, parts.arm.home, manner)
     description = parts.description
-    command = command_of(description.command, fastest_in(parts, found))
+    command = command_of(description.command, fastest(manner.reach, found.sigma, found.p_x, parts.base))
     space = Workspace(*found.l, *found.psi, *found.z, edges=True)
     gripper = bool(description.hand.gripper)
     return DescribedRobot(
@@ -129,17 +139,13 @@ def robot_of(parts: Parts, mode: str, found: Measured, compiled: bool | None = N
 
 
 @cache
-def load(which: str, mode: str = "") -> Model:
+def load(which: str) -> Model:
     """Return the robot called `which`, or in the file `which`; "#MODE" at its end says how its hand is held.
 
     Raises SetupError in one line. Where its workspace is not known it is measured, which takes seconds.
     """
-    name, _, own = which.partition(IN_MODE)
-    mode = mode or own or MODE
-    description, folder = description_of(name)
-    if name.endswith(MODEL_FILES):
-        description = homed(description, folder, mode, _say)
-    parts = parts_in(description, folder, mode)
+    name, mode = parted(which)
+    parts = parts_for(which)
     for warning in parts.warnings:
         _say(f"{name}: {warning}")
     return robot_of(parts, mode, workspace_of(parts, mode, _say))

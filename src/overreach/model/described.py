@@ -50,7 +50,7 @@ class DescribedRobot:
         """Return the same with another workspace, inside the one that was measured; raises WorkspaceError."""
         own = self.workspace
         if mount != self.mount:
-            raise WorkspaceError(f"the shoulder of {self.name} is where its model has it: {own}")
+            raise WorkspaceError(f"the shoulder of {self.name} is where its model has it: {self.mount}")
         if workspace != own:
             within = own.contains(workspace.l_min, workspace.psi_min) and own.contains(
                 workspace.l_max, workspace.psi_max

@@ -9,6 +9,7 @@ import signal
 import sys
 from types import FrameType
 
+from overreach.arm.chain import governs
 from overreach.arm.spatial.engine import warm_beside
 from overreach.clock import Clock, MonotonicClock
 from overreach.errors import SetupError
@@ -101,7 +102,7 @@ def run_robot(
 
         gc.collect()
         gc.freeze()
-        if getattr(device.model.arm, "governs", False):
+        if governs(device.model.arm):
             warm_beside()
         loop.run(running)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from overreach.arm.chain import Governing
+from overreach.arm.chain import Governing, governs
 from overreach.control.tick import Tick
 from overreach.model.model import Model
 from overreach.types import RobotState
@@ -55,7 +55,7 @@ class SpatialRow(NamedTuple):
 
 def is_spatial(model: Model) -> bool:
     """Say whether the hand moves in space, and not in the plane alone."""
-    return bool(getattr(model.arm, "governs", False))
+    return governs(model.arm)
 
 
 def header(model: Model) -> list[str]:

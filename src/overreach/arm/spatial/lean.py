@@ -53,7 +53,7 @@ from overreach.arm.spatial.step import (
     U,
     half_turn,
     reach_for,
-)  # fmt: skip  # isort: skip
+)
 
 Three = tuple[float, float, float]
 

@@ -9,7 +9,7 @@ from tqdm import tqdm
 
 from overreach.errors import WorkspaceError
 from overreach.files import write_text
-from overreach.model.catalogue import description_of, measured, parts_in
+from overreach.model.catalogue import measured, parts_for
 from overreach.model.measure.figure import draw
 from overreach.model.measure.homes import find_homes, with_home
 from overreach.model.measure.text import drawing, table, with_table
@@ -20,8 +20,8 @@ SHOWN = 5
 
 def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figure: Path | None) -> None:
     """Measure, draw, print and, where it is asked for, write; raises SetupError with nothing written."""
-    description, folder = description_of(robot)
-    parts = parts_in(description, folder, mode)
+    parts = parts_for(robot, mode)
+    description = parts.description
     for warning in parts.warnings:
         print(f"warning: {warning}")
     if find_home:
