@@ -1,6 +1,8 @@
 from __future__ import annotations
 
+import threading
 import time
+from collections.abc import Callable
 
 import msgspec
 import pytest
@@ -11,7 +13,8 @@ from overreach.errors import LinkError, SetupError
 from overreach.link import messages
 from overreach.link.endpoint import check_endpoint, free_port, open_session
 from overreach.link.messages import Accepted, Choice, ConfigureRequest, Hello, Refused, Settings, key
-from overreach.link.operator_end import OperatorEnd
+from overreach.link.operator_end import PATIENCE_S, OperatorEnd
+from overreach.link.robot_end import RobotEnd
 from overreach.model.planar import planar
 from overreach.model.workspace import Workspace
 from overreach.requests import ArmRequest, ResetRequest, RestartRequest, StopRequest
@@ -172,6 +175,33 @@ def test_nobody_there() -> None:
             link.welcome(0.3)
     finally:
         link.close()
+
+
+def test_a_late_answer_counts() -> None:
+    """Where each answer comes later than the operator side asks again, the first that comes is taken all the same."""
+    late_s = 1.25 * PATIENCE_S
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    end, link, over = RobotEnd(endpoint, "slow"), OperatorEnd(endpoint, "slow"), threading.Event()
+
+    def serve() -> None:
+        due: list[tuple[float, Callable[[messages.Answer], None]]] = []
+        while not over.wait(0.005):
+            due += [(time.monotonic() + late_s, answer) for _, answer in end.requests()]
+            while due and due[0][0] < time.monotonic():
+                due.pop(0)[1](Accepted())
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    try:
+        until(lambda: bool(link._session.info.peers_zid()), what="a connection")
+        begun = time.monotonic()
+        assert link.request(ResetRequest()) == Accepted()
+        assert late_s <= time.monotonic() - begun
+    finally:
+        over.set()
+        thread.join()
+        link.close()
+        end.close()
 
 
 def test_a_taken_port_is_told() -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import queue
 import threading
 from collections.abc import Callable
-from typing import final
+from typing import TypeAlias, final
 
 import msgspec
 import zenoh
@@ -43,6 +44,8 @@ LOADING_S = 10.0
 AGAIN_S = 0.02
 URGENT = (StopRequest, DisarmRequest)
 """Requests that go ahead of everything else."""
+
+Replies: TypeAlias = "queue.SimpleQueue[zenoh.Reply | None]"
 
 
 @final
@@ -103,11 +106,12 @@ class OperatorEnd:
         with contextlib.suppress(zenoh.ZError):  # another robot's by now: the next one is sent to the right one
             commands.put(encode(command))
 
-    def _ask(self, what: str, message: object, timeout_s: float, robot: str = "") -> dict[str, Answer]:
-        """Return the answers by the names of the robots that gave them; `robot` "" asks all."""
+    def _get(self, what: str, message: object, timeout_s: float, robot: str, replies: Replies) -> None:
+        """Ask `robot`, or all if that is "": each reply is put into `replies` as it comes, after the last a None."""
         session = self._urgent if isinstance(message, URGENT) else self._session
-        replies = session.get(
+        session.get(
             key(robot or ANY, what),
+            zenoh.handlers.Callback(replies.put, lambda: replies.put(None)),
             payload=encode(message),
             timeout=timeout_s,
             target=zenoh.QueryTarget.ALL,
@@ -115,22 +119,36 @@ class OperatorEnd:
             priority=zenoh.Priority.REAL_TIME if isinstance(message, URGENT) else zenoh.Priority.DATA,
             express=True,
         )
+
+    def _ask(self, what: str, message: object, timeout_s: float, robot: str = "") -> dict[str, Answer]:
+        """Return the answers by the names of the robots that gave them; `robot` "" asks all."""
+        replies: Replies = queue.SimpleQueue()
+        self._get(what, message, timeout_s, robot, replies)
         return {
             str(reply.ok.key_expr).split("/")[1]: decode_answer(reply.ok.payload.to_bytes())
-            for reply in replies
+            for reply in iter(replies.get, None)
             if reply.ok is not None
         }
 
     def request(self, request: AnyRequest) -> Accepted | Refused:
-        """Ask the robot side for something; return its answer. Blocks for at most ANSWER_S, settings for LOADING_S."""
+        """Ask the robot side for something; return its answer. Blocks for at most ANSWER_S, settings for LOADING_S.
+
+        It is asked again where no answer comes in time, and the first one counts, to whichever asking it is.
+        """
         what = "stop" if isinstance(request, StopRequest) else "request"
         slow = isinstance(request, ConfigureRequest)
         until = self._clock.now() + (LOADING_S if slow else ANSWER_S)
+        replies: Replies = queue.SimpleQueue()
         while (left := until - self._clock.now()) > 0.0:
-            answer = self._ask(what, request, min(PATIENCE_S, left), self.robot).get(self.robot)
-            if isinstance(answer, Accepted | Refused):
-                return answer
-            self._clock.sleep_until(self._clock.now() + AGAIN_S)
+            self._get(what, request, left, self.robot, replies)
+            with contextlib.suppress(queue.Empty):
+                reply = replies.get(timeout=min(PATIENCE_S, left))
+                if reply is None or reply.ok is None:  # nobody is there to answer yet
+                    self._clock.sleep_until(self._clock.now() + AGAIN_S)
+                    continue
+                answer = decode_answer(reply.ok.payload.to_bytes())
+                if isinstance(answer, Accepted | Refused):
+                    return answer
         return Refused("No answer from the robot side.")
 
     def welcome(self, wait_s: float, ended: Callable[[], bool] = lambda: False) -> Welcome:
