@@ -63,6 +63,11 @@ def ended(host: psutil.Process, seconds: float = GENEROUS_S) -> None:
     until(lambda: gone(host.pid), seconds, "the end of the host")
 
 
+def between_decisions(log: Log) -> None:
+    """Return half a period after a write: a pause that begins here is in no decision, where it would be the law's."""
+    time.sleep(1.5 * PERIOD_S - (time.monotonic() - log.newest().at) % PERIOD_S)
+
+
 def ramp_s(entry: Entry) -> float:
     """Return v/a [s] of what stands."""
     return max(abs(rate) / change for rate, change in zip(entry.rates, CHANGE, strict=True))
@@ -177,6 +182,7 @@ def test_a_short_pause_is_a_dip(log: Log) -> None:
     """Held up for 60 ms: the robot slows down, and goes on by itself; nobody has to do anything."""
     with driven(log) as (_, running, observer, driver):
         for _ in range(5):
+            between_decisions(log)
             running.process.send_signal(signal.SIGSTOP)
             time.sleep(0.06)
             running.process.send_signal(signal.SIGCONT)
