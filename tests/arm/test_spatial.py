@@ -17,8 +17,9 @@ from overreach.arm.spatial import task
 from overreach.arm.spatial.arm import SpatialArm, turned, vector
 from overreach.arm.spatial.inverse import SLIGHT, damping, inverse, rates
 from overreach.arm.spatial.manner import TOL_V
-from overreach.arm.spatial.room import bounds
+from overreach.arm.spatial.room import NULL_SPEED, SPEED, bounds
 from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.settle import Places
 from overreach.arm.spatial.turning import apart, yawed
 from overreach.model.catalogue import description_of, parts_in
 from overreach.model.mujoco.chain import joint_of
@@ -105,11 +106,11 @@ def test_they_conform(name: str, mode: str) -> None:
         check_arm(arm, samples, mount)
 
 
-def asked_at_random(random: np.random.Generator, arm: SpatialArm) -> tuple[Array, Array]:
-    """Return what a step may be asked, and the joint rates before it."""
+def asked_at_random(random: np.random.Generator, arm: SpatialArm) -> Array:
+    """Return what a step may be asked."""
     n = len(arm.channels)
     size = random.choice([0.1, 1.0, 4.0, 20.0])
-    asked = np.zeros(layout.ASKED)
+    asked = np.zeros(layout.ASKED + n)
     asked[layout.U : layout.U + 3] = random.normal(0.0, 0.1 * size, 3)
     asked[layout.W_C] = random.normal(0.0, 0.3)
     asked[layout.DELTA] = random.uniform(-math.pi, math.pi) * (random.random() < 0.5)
@@ -118,8 +119,9 @@ def asked_at_random(random: np.random.Generator, arm: SpatialArm) -> tuple[Array
     asked[layout.WAS : layout.WAS + 3] = asked[layout.PLAN : layout.PLAN + 3] + random.normal(0.0, 0.02, 3)
     asked[layout.STEP : layout.STEP + 3] = (0.015, 0.015, 0.04)
     asked[layout.DT] = random.choice([0.005, 0.01])
-    asked[layout.S_X :] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
-    return asked, random.normal(0.0, 0.3, n) * (random.random() < 0.7)
+    asked[layout.S_X : layout.ASKED] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
+    asked[layout.ASKED :] = random.normal(0.0, 0.3, n) * (random.random() < 0.7)
+    return asked
 
 
 def turned_to(arm: SpatialArm, hand: Array) -> Array:
@@ -145,17 +147,17 @@ def test_the_two_writings_agree(name: str, mode: str) -> None:
             assert max(np.abs(a - b).max() for a, b in zip(*poses, strict=True)) < 1e-12
             if apart(turned_to(one, poses[0][0]), poses[0][0], np.empty(3)) > 3.0:
                 continue  # half a turn has no direction
-            asked, was = asked_at_random(random, one)
+            asked = asked_at_random(random, one)
             outs = np.empty(n + layout.DONE), np.empty(n + layout.DONE)
-            one.engine.step(q, poses[0][0], poses[0][1], was, asked, outs[0])
-            other.engine.step(q, poses[0][0], poses[0][1], was, asked, outs[1])
+            one.engine.step(q, poses[0][0], poses[0][1], asked, outs[0])
+            other.engine.step(q, poses[0][0], poses[0][1], asked, outs[1])
             assert np.isfinite(outs[0]).all()
             if outs[0][n + layout.JOINT] != outs[1][n + layout.JOINT]:  # two joints limit alike: either may be named
                 ties += 1
                 for one_of in (layout.JOINT, layout.WHY):
                     outs[0][n + one_of] = outs[1][n + one_of]
             apart_by = 1e-6 if outs[0][n + layout.WHY] == layout.OFF else 1e-9  # far off, where the arm is singular
-            assert np.abs(outs[0] - outs[1]).max() < apart_by, (q.tolist(), asked.tolist(), was.tolist(), outs)
+            assert np.abs(outs[0] - outs[1]).max() < apart_by, (q.tolist(), asked.tolist(), outs)
             seen[int(outs[0][n + layout.WHY])] += 1
     assert ties < 10
     assert min(seen[why] for why in (layout.FINE, layout.AT_LIMIT, layout.AT_SPEED, layout.CHANGING)) > 10, seen
@@ -168,9 +170,9 @@ def test_a_step_ends_where_it_should_or_says_that_it_does_not(name: str, mode: s
     n, random, whole = len(arm.channels), np.random.default_rng(2), 0
     for q in postures(arm, 3000, 3):
         chain = arm.at(tuple(q.tolist()), Mount(0.1, 0.05, 0.2))
-        asked, was = asked_at_random(random, arm)
+        asked = asked_at_random(random, arm)
         out = np.empty(n + layout.DONE)
-        arm.engine.step(q, chain.pose, chain.J, was, asked, out)
+        arm.engine.step(q, chain.pose, chain.J, asked, out)
         dt = asked[layout.DT]
         after = q + out[:n] * dt
         speed, lower, upper = arm.limits[:, 2], arm.limits[:, 0], arm.limits[:, 1]
@@ -225,6 +227,38 @@ def test_the_inverse_is_the_damped_weighted_one() -> None:
         )
         if sigma >= 0.1:
             assert A @ out == pytest.approx(x, abs=1e-8)
+
+
+@pytest.mark.parametrize("mode", ["follow", "fixed"])
+def test_the_posture_rests_where_the_workspace_was_measured(mode: str) -> None:
+    """A hand that stands still draws its arm to the posture of its place that the walk finds, from wherever it was.
+
+    On its way no joint has more than its part of its speed.
+    """
+    arm = parts("mobile7", mode).arm
+    n, R, home = len(arm.channels), arm.manner.reach, arm.posture_at_home
+    fastest = []
+    for l, psi, z in ((0.62, -0.9, 0.2), (0.62, 0.9, -0.3), (0.85, 0.4, 0.3), (0.7, 0.0, 0.0)):
+        place = Places(np.array([l * R]), np.array([psi]), np.array([home.z + z * R]), np.zeros(1))
+        walked = np.array([arm.posture(l * R, psi, home.z + z * R)])
+        rests = home.settle(walked, place, place, walk=1000, rest=0).q[0]  # to its very end
+        _, _, V = np.linalg.svd(home.task_jacobian(rests[None])[0])
+        away = rests + 0.6 * V[-1] / abs(V[-1]).max()  # where the hand stays, to the first order
+        away = np.clip(away, arm.limits[:, 0] + 0.1, arm.limits[:, 1] - 0.1)
+        q = home.settle(away[None], place, place, rest=0).q[0]
+        asked = np.zeros(layout.ASKED + n)
+        asked[layout.DT], asked[layout.COS], asked[layout.STEP : layout.STEP + 3] = 0.01, 1.0, 0.02
+        out = np.empty(n + layout.DONE)
+        hand, jacobian, places = np.empty(12), np.empty((6, n)), np.empty((n, 3))
+        for _ in range(2000):
+            arm.engine.forward(q, hand, jacobian, places)
+            arm.engine.step(q, hand, jacobian, asked, out)
+            asked[layout.ASKED :] = out[:n]
+            q = q + out[:n] * 0.01
+            fastest.append(float((abs(out[:n]) / arm.limits[:, SPEED]).max()))
+        assert math.hypot(hand[9], hand[10]) == pytest.approx(l * R, abs=1e-3)
+        assert q == pytest.approx(rests, abs=0.005)
+    assert max(fastest) <= NULL_SPEED + 1e-3
 
 
 @given(

@@ -28,7 +28,7 @@ ROOT = Path(__file__).parents[2]
 LISTED = Path(__file__).with_name("SURVIVORS.md")
 MOST = 10
 WORKERS = 2
-TIMEOUT_S = 30.0
+TIMEOUT_S = 90.0
 JUDGES = {
     "limits": ("limits", "gate"),
     "feedback": ("feedback",),

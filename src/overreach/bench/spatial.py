@@ -43,10 +43,9 @@ TIMES = {COMPILED: 20.0, LEAN: 2.5}
 
 
 class Met(NamedTuple):
-    """What one step of the loop was given: joints, joint rates before, and what was asked; see `arm.spatial.step`."""
+    """What one step of the loop was given: joints, and what was asked; see `arm.spatial.step`."""
 
     q: Array
-    was: Array
     asked: Array
     l: float
     psi: float
@@ -60,13 +59,13 @@ class _Listening:
         self._engine, self.forward = engine, engine.forward
         self.met: list[Met] = []
 
-    def step(self, q: Array, hand: Array, J: Array, was: Array, asked: Array, out: Array) -> None:
+    def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         x, y = hand[9:11].tolist()
         l, psi = float(np.hypot(x, y)), float(np.arctan2(y, x))
         c, s = np.cos(psi), np.sin(psi)
         u = float(c * asked[0] + s * asked[1]), float(c * asked[1] - s * asked[0])
-        self.met.append(Met(q.copy(), was.copy(), asked.copy(), l, psi, u))
-        self._engine.step(q, hand, J, was, asked, out)
+        self.met.append(Met(q.copy(), asked.copy(), l, psi, u))
+        self._engine.step(q, hand, J, asked, out)
 
 
 def with_engine(model: DescribedRobot, compiled: bool) -> DescribedRobot:
@@ -97,7 +96,7 @@ def step_of(model: DescribedRobot) -> Callable[[Met], None]:
     def step(met: Met) -> None:
         engine.forward(met.q, hand, J, places)
         share(met.l, met.psi, *met.u)
-        engine.step(met.q, hand, J, met.was, met.asked, out)
+        engine.step(met.q, hand, J, met.asked, out)
 
     return step
 

@@ -87,8 +87,8 @@ def _turned_off(model: DescribedRobot, driven: Driven, R: Array, psi: Array) -> 
     """Return how far [rad] the turnings that are held are off, at each state."""
     arm = model.arm
     manner, R_home = arm.manner, arm.R_home.ravel()
-    bearing = np.unwrap(driven.base[:, 2] + psi)
-    heading = bearing[0] + np.concatenate(([0.0], np.cumsum(driven.w * driven.scale) * DT_S))
+    bearing = driven.base[:, 2] + model.mount.yaw + psi
+    heading = _headings(model, driven, bearing) if manner.yaw > 0.0 else bearing
     off = np.empty(len(R))
     T = np.empty((task.count(manner.held), 6))
     approach, goal, e = np.array(manner.approach), np.empty(9), np.empty(3)
@@ -102,6 +102,19 @@ def _turned_off(model: DescribedRobot, driven: Driven, R: Array, psi: Array) -> 
         task.rows(manner.held, psi[k], goal, approach, 1.0, T)
         off[k] = np.linalg.norm(T[3:, 3:] @ e)
     return off
+
+
+def _headings(model: DescribedRobot, driven: Driven, bearing: Array) -> Array:
+    """Return the heading [rad] that a fixed yaw comes from, at each state: each motion begins with that of its hand."""
+    rests = np.append((driven.u == 0.0).all(axis=1) & (driven.w == 0.0), False)
+    turned = driven.w * driven.scale * DT_S
+    heading = np.empty(len(bearing))
+    for k in range(len(bearing)):
+        if k == 0 or rests[k - 1]:
+            heading[k] = bearing[k] + model.arm.at(tuple(driven.q[k].tolist()), model.mount).heading
+        else:
+            heading[k] = heading[k - 1] + turned[k - 1]
+    return heading
 
 
 def _beyond(values: Array, low: float, high: float) -> float:

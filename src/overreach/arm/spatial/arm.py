@@ -217,10 +217,11 @@ class SpatialChain:
             (
                 c * u_r - s * u_t, s * u_r + c * u_t, u_z, asked.w_c, asked.delta,
                 *asked.plan, *asked.slip, *asked.was, *asked.change, asked.dt, mount.s_x, mount.s_y, *self._turn,
+                *asked.joints,
             )
         )  # fmt: skip
         out = np.empty(n + layout.DONE)
-        arm.engine.step(self._q, self.pose, self.J, np.array(asked.joints), numbers, out)
+        arm.engine.step(self._q, self.pose, self.J, numbers, out)
         *joints, v_x, v_y, w_z, scale, _sigma, joint, why, _off_v, _off_w, _yaw = out.tolist()
         verdict, said = SAYS[int(why)]
         name = arm.channels[int(joint)].moves if joint >= 0.0 else "A joint"

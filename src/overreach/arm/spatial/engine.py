@@ -23,7 +23,7 @@ class Engine(Protocol):
         """See `screws.forward`."""
         ...
 
-    def step(self, q: Array, hand: Array, J: Array, was: Array, asked: Array, out: Array) -> None:
+    def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         """See `step.step`."""
         ...
 
@@ -42,21 +42,21 @@ class Compiled:
 
     def __init__(self, screws: Array, tip: Array, limits: Array, setup: Array) -> None:
         self._forward, self._step = _functions()
-        self._chain, self._fixed = (screws, tip), (screws, tip, limits, setup)
+        self._chain, self._fixed = (screws, tip), (screws, limits, np.concatenate((setup, tip)))
         n = len(screws)
         q, hand, J, places = limits[:, HOME].copy(), np.empty(12), np.empty((6, n)), np.empty((n, 3))
         self.forward(q, hand, J, places)
-        asked = np.zeros(ASKED)
+        asked = np.zeros(ASKED + n)
         asked[DT], asked[COS] = 0.01, 1.0
-        self.step(q, hand, J, np.zeros(n), asked, np.empty(n + DONE))
+        self.step(q, hand, J, asked, np.empty(n + DONE))
 
     def forward(self, q: Array, hand: Array, J: Array, places: Array) -> None:
         """See `screws.forward`."""
         self._forward(*self._chain, q, hand, J, places)
 
-    def step(self, q: Array, hand: Array, J: Array, was: Array, asked: Array, out: Array) -> None:
+    def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         """See `step.step`."""
-        self._step(*self._fixed, q, hand, J, was, asked, out)
+        self._step(*self._fixed, q, hand, J, asked, out)
 
 
 def engine(screws: Array, tip: Array, limits: Array, setup: Array, compiled: bool | None = None) -> Engine:

@@ -37,19 +37,19 @@ def null_share(a: Array, b: Array, c: Array, low: Array, high: Array) -> float:
 
 
 def fit(
-    A: Array, w: Array, x: Array, x_c: Array, null: Array, low: Array, high: Array, soft_low: Array, soft_high: Array,
-    eps: float, out: Array,
+    A: Array, w: Array, x: Array, x_c: Array, null: Array, most_null: Array, low: Array, high: Array, soft_low: Array,
+    soft_high: Array, eps: float, out: Array,
 ) -> tuple[float, float, int]:  # fmt: skip
     """Write rates for s x + x_c into `out` (n,), within [low, high]; return (s, sigma, the joint that limits or -1).
 
-    x: what may be scaled; x_c: what may not; null: wanted rates of which only what does not move the hand is used, and
-    that only as far as the rates stay within the soft bounds too, if they can. Where not even s = 0 fits, each joint
-    brakes as its own bounds allow, and s is -1.
+    x: what may be scaled; x_c: what may not; null: wanted rates of which only what does not move the hand is used, at
+    most `most_null` of each joint, and only as far as the rates stay within the soft bounds too, if they can. Where not
+    even s = 0 fits, each joint brakes as its own bounds allow, and s is -1.
     """
     m, n = A.shape
-    free, held = np.ones(n), np.zeros(n)
-    B, y = np.empty((m, m)), np.empty(m)
-    a, b, c = np.empty(n), np.empty(n), np.empty(n)
+    B, y, of_joints = np.empty((m, m)), np.empty(m), np.empty((5, n))
+    a, b, c, free, held = of_joints[0], of_joints[1], of_joints[2], of_joints[3], of_joints[4]
+    free[:], held[:] = 1.0, 0.0
     sigma = inverse(A, w, free, eps, B)
     rates(A, w, free, B, x, a)
     rates(A, w, free, B, x_c, b)
@@ -62,8 +62,12 @@ def fit(
                 total -= A[i, k] * null[k]
             y[i] = total
         rates(A, w, free, B, y, c)
+        beyond = 1.0
         for k in range(n):
             c[k] += null[k]
+            beyond = max(beyond, abs(c[k]) / most_null[k])
+        for k in range(n):
+            c[k] /= beyond
     part = null_share(a, b, c, soft_low, soft_high)
     if part < 0.0:
         part = null_share(a, b, c, low, high)

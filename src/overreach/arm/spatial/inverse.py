@@ -124,12 +124,13 @@ def inverse(A: Array, w: Array, free: Array, eps: float, B: Array) -> float:
     Where sigma is surely above eps, what it is at least is returned: that it needs no damping is all there is to know.
     """
     m = A.shape[0]
-    G, L = np.empty((m, m)), np.empty((m, m))
+    scratch = np.empty((3, m, m))
+    G, L = scratch[0], scratch[1]
     gram(A, w, free, G)
     invert(G, 0.0, L, B)
     sigma = surely(B)
     if sigma < eps:
-        sigma = least(B, np.empty((m, m)), L)
+        sigma = least(B, scratch[2], L)
         if sigma < eps:
             invert(G, damping(sigma, eps), L, B)
     return sigma
@@ -143,7 +144,8 @@ def damping_beside(sigma: float, eps: float) -> float:
 def inverse_beside(A: Array, w: Array, free: Array, damped: float, B: Array) -> None:
     """Write the inverse into `B` with a damping that is known."""
     m = A.shape[0]
-    G, L = np.empty((m, m)), np.empty((m, m))
+    scratch = np.empty((2, m, m))
+    G, L = scratch[0], scratch[1]
     gram(A, w, free, G)
     invert(G, damped, L, B)
 

@@ -18,6 +18,7 @@ from overreach.arm.spatial.room import ENDLESS, NEAR_HOME, NULL_SPEED, OFF_LIMIT
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.step import (
     APPROACH,
+    ASKED,
     AT_BOUND,
     AT_LIMIT,
     AT_SPEED,
@@ -71,6 +72,7 @@ class Lean:
         self._m = task.count(self._held)
         self._w = limits[:, WEIGHT].copy()
         self._speed = limits[:, SPEED].tolist()
+        self._most_null = (NULL_SPEED * limits[:, SPEED]).tolist()
         self._joints = [_joint(row, setup[MARGIN], setup[NULL_GAIN]) for row in limits.tolist()]
         self._R_home = setup[R_HOME : R_HOME + 9].reshape(3, 3)
         self._approach = setup[APPROACH : APPROACH + 3]
@@ -101,7 +103,7 @@ class Lean:
             return np.array((*v, ell * turning[0], ell * turning[1], ell * turning[2]))
         return np.concatenate((v, T @ turning))
 
-    def step(self, q: Array, hand: Array, J: Array, was: Array, asked: Array, out: Array) -> None:
+    def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         """See `step.step`."""
         n, m, setup = self._n, self._m, self._setup
         ask = asked.tolist()
@@ -117,11 +119,11 @@ class Lean:
         e = (e_x * k_r, e_y * k_r, e_z * k_r)
         T = self._task(bearing, R)
         A = self._rows(T, J)
-        rates = was.tolist()
+        rates = ask[ASKED:]
         low, high, null, change = _room(self._joints, q.tolist(), dt)
         soft_low = [max(one, before - most) for one, before, most in zip(low, rates, change, strict=True)]
         soft_high = [min(one, before + most) for one, before, most in zip(high, rates, change, strict=True)]
-        fit = Fit(A, self._w, null, low, high, soft_low, soft_high, setup[EPS])
+        fit = Fit(A, self._w, null, self._most_null, low, high, soft_low, soft_high, setup[EPS])
 
         def left_by(v_x: float, v_y: float, w: float, e: Three) -> Array:
             v_x, v_y = v_x - w * y_h, v_y + w * x_h
@@ -225,7 +227,7 @@ def _joint(limits: list[float], margin: float, gain: float) -> tuple[float, ...]
     half = 1.0 if endless else half
     return (
         lower + margin, upper - margin, speed, braking, change, home, 0.5 * (lower + upper), half,
-        0.0 if endless else OFF_LIMITS, -gain * weight, NULL_SPEED * speed,
+        0.0 if endless else OFF_LIMITS, -gain * weight,
     )  # fmt: skip
 
 
@@ -235,7 +237,7 @@ def _room(
     """Return low and high of `room.bounds`, the null rates of `room.downhill`, and greatest changes."""
     lows, highs, nulls, changes = [], [], [], []
     square = dt * dt
-    for (first, last, speed, braking, change, home, middle, half, off, pull, most), x in zip(joints, q, strict=True):
+    for (first, last, speed, braking, change, home, middle, half, off, pull), x in zip(joints, q, strict=True):
         ahead, behind = last - x, x - first
         stops = braking * (math.sqrt(square + 2.0 * ahead / braking) - dt) if ahead > 0.0 else 0.0
         highs.append(stops if stops < speed else speed)
@@ -243,8 +245,7 @@ def _room(
         lows.append(-stops if stops < speed else -speed)
         y = (x - middle) / half
         y2 = y * y
-        null = pull * (NEAR_HOME * (x - home) / half + off * y2 * y2 * y2 * y) / half
-        nulls.append(most if null > most else -most if null < -most else null)
+        nulls.append(pull * (NEAR_HOME * (x - home) / half + off * y2 * y2 * y2 * y) / half)
         changes.append(change * dt)
     return lows, highs, nulls, changes
 

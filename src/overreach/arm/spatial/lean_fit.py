@@ -23,6 +23,7 @@ class Fit:
         A: Array,
         w: Array,
         null: Floats,
+        most_null: Floats,
         low: Floats,
         high: Floats,
         soft_low: Floats,
@@ -35,7 +36,11 @@ class Fit:
         B, self.sigma = _inverse(A_w @ A.T, eps)
         self._P = P = A_w.T @ B
         m, n = A.shape
-        self._c: Floats = (np.array(null) - P @ (A @ null)).tolist() if n > m else [0.0] * n
+        self._c: Floats = [0.0] * n
+        if n > m:
+            c = (np.array(null) - P @ (A @ null)).tolist()
+            beyond = max(1.0, *[abs(one) / most for one, most in zip(c, most_null, strict=True)])
+            self._c = [one / beyond for one in c]
 
     def fit(self, x: Array, x_c: Array) -> tuple[float, int, Floats]:
         """Return (s, the joint that limits or -1, rates)."""

@@ -15,7 +15,8 @@ ENDLESS = 100.0
 NEAR_HOME, OFF_LIMITS = 0.3, 1.0
 """Weights of the two parts of the potential."""
 NULL_SPEED = 0.5
-"""The posture is drawn home with at most this part of a joint's speed."""
+"""The posture is drawn home with at most this part of any joint's speed, all joints in proportion: each held to its
+own, they would go another way, and rest elsewhere than where the workspace was measured."""
 
 
 def bounds(limits: Array, q: Array, dt: float, margin: float, low: Array, high: Array) -> None:
@@ -32,7 +33,7 @@ def bounds(limits: Array, q: Array, dt: float, margin: float, low: Array, high: 
 
 
 def downhill(limits: Array, q: Array, gain: float, out: Array) -> None:
-    """Write -gain w grad H [1/s], held to a part of each joint's speed: towards home and away from the limits.
+    """Write -gain w grad H [1/s]: towards home and away from the limits.
 
     H = NEAR_HOME/2 sum((q - home)/half)^2 + OFF_LIMITS/8 sum((q - mid)/half)^8, half and mid of each joint's range.
     """
@@ -45,5 +46,4 @@ def downhill(limits: Array, q: Array, gain: float, out: Array) -> None:
             x = (q[k] - 0.5 * (limits[k, UPPER] + limits[k, LOWER])) / half
             x2 = x * x
             slope = (NEAR_HOME * away / half + OFF_LIMITS * x2 * x2 * x2 * x) / half
-        most = NULL_SPEED * limits[k, SPEED]
-        out[k] = max(-most, min(most, -gain * limits[k, WEIGHT] * slope))
+        out[k] = -gain * limits[k, WEIGHT] * slope

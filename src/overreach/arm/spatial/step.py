@@ -22,7 +22,7 @@ import numpy as np
 
 from overreach.arm.spatial.fit import fit
 from overreach.arm.spatial.inverse import damping_beside, inverse_beside, rates
-from overreach.arm.spatial.room import CHANGE, SPEED, WEIGHT, bounds, downhill
+from overreach.arm.spatial.room import CHANGE, NULL_SPEED, SPEED, WEIGHT, bounds, downhill
 from overreach.arm.spatial.screws import Array, forward
 from overreach.arm.spatial.task import count, product, rows, yielding
 from overreach.arm.spatial.turning import apart, yawed
@@ -32,12 +32,14 @@ APPROACH, R_HOME = 9, 12
 SETUP = 21
 """What is fixed for an arm and its orientation mode, in `setup`: the turnings that are held, length ell [m], eps [m/s],
 gains [1/s], margin [rad, m], the greatest deviation D of a fixed yaw [rad] (0: the bearing is followed), tolerances
-[m/s, rad]; then the approach axis in the hand's frame (3) and the hand's attitude at bearing 0, by rows (9)."""
+[m/s, rad]; then the approach axis in the hand's frame (3), the hand's attitude at bearing 0, by rows (9); behind them,
+for `step`, the tip (12): see `screws`."""
 
 U, W_C, DELTA, PLAN, SLIP, WAS, STEP, DT, S_X, S_Y, COS, SIN, ASKED = 0, 3, 4, 5, 8, 11, 14, 17, 18, 19, 20, 21, 22
 """What is asked, in `asked`: u [m/s] along the arm's axes (3), w_c [rad/s], the wanted yaw past the bearing [rad], the
 base's plan, slip, last written twist and greatest change (3 each: v_x, v_y, w_z, along the base's axes), the period
-[s]; shoulder [m] and cosine and sine of the arm's yaw in the base frame."""
+[s]; shoulder [m] and cosine and sine of the arm's yaw in the base frame; behind them the joint rates that were written
+last (n)."""
 
 BASE, SCALE, SIGMA, JOINT, WHY, OFF_V, OFF_W, YAW, DONE = 0, 3, 4, 5, 6, 7, 8, 9, 10
 """What is answered, in `out`, behind the n joint rates: the base twist to write (3), scale, sigma [m/s], the joint that
@@ -125,25 +127,29 @@ def half_turn(angle: float) -> float:
 
 
 def step(
-    screws: Array, tip: Array, limits: Array, setup: Array, q: Array, hand: Array, J: Array, was: Array, asked: Array,
-    out: Array,
+    screws: Array, limits: Array, setup: Array, q: Array, hand: Array, J: Array, asked: Array, out: Array
 ) -> None:  # fmt: skip
     """Write the step of an arm at joints `q` (n,), with `hand` and `J` from `forward`, into `out` (n + DONE,).
 
-    was: the joint rates that were written last. See SETUP, ASKED and BASE for the others. Always finite.
+    See SETUP, ASKED and BASE for what is in the others. Always finite.
     """
     n = q.shape[0]
     held, dt = int(setup[HELD]), asked[DT]
     m = count(held)
-    T, T_1, A, B, J_1 = np.empty((m, 6)), np.empty((m, 6)), np.empty((m, n)), np.empty((m, m)), np.empty((6, n))
-    A_1, x, x_c = np.empty((m, n)), np.empty(m), np.empty(m)
-    low, high, null, dq, q_1, more = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    free, w, soft_low, soft_high = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    hand_1, places = np.empty(12), np.empty((n, 3))
-    R, e, place, none = np.empty(9), np.empty(3), np.empty(3), np.zeros(3)
-    base, real, plan, slip, u = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    polar, off = np.empty(3), np.empty(3)
-    R_home, approach = setup[R_HOME : R_HOME + 9], setup[APPROACH : APPROACH + 3]
+    # A few blocks rather than many small ones: asking for memory is a third of the cost of all this.
+    of_task, of_hand, of_joints = np.empty((2, m, 6)), np.empty((2, m, n)), np.empty((11, n))
+    of_rows, of_space, poses = np.empty((2, m)), np.empty((10, 3)), np.empty((2, 12))
+    B, J_1, places = np.empty((m, m)), np.empty((6, n)), np.empty((n, 3))
+    T, T_1, A, A_1, x, x_c = of_task[0], of_task[1], of_hand[0], of_hand[1], of_rows[0], of_rows[1]
+    low, high, soft_low, soft_high = of_joints[0], of_joints[1], of_joints[2], of_joints[3]
+    null, most_null, dq, q_1, more = of_joints[4], of_joints[5], of_joints[6], of_joints[7], of_joints[8]
+    free, w = of_joints[9], of_joints[10]
+    e, place, none, base, real = of_space[0], of_space[1], of_space[2], of_space[3], of_space[4]
+    plan, slip, u, polar, off = of_space[5], of_space[6], of_space[7], of_space[8], of_space[9]
+    hand_1, R = poses[0], poses[1, :9]
+    none[:] = 0.0
+    R_home, approach, tip = setup[R_HOME:SETUP], setup[APPROACH:R_HOME], setup[SETUP:]
+    was = asked[ASKED:]
     ell, eps = setup[ELL], setup[EPS]
     moved_with(asked, asked[SLIP : SLIP + 3], slip)
 
@@ -159,7 +165,7 @@ def step(
     rows(held, bearing, R, approach, ell, T)
     product(T, J, A)
     for k in range(n):
-        w[k] = limits[k, WEIGHT]
+        w[k], most_null[k] = limits[k, WEIGHT], NULL_SPEED * limits[k, SPEED]
     for i in range(3):
         e[i] *= setup[K_R]
     bounds(limits, q, dt, setup[MARGIN], low, high)
@@ -180,7 +186,7 @@ def step(
         bearing_rate = (polar[0] * u[1] - polar[1] * u[0]) / polar[2]
         task_of(T, u[0], u[1], u[2], inside * w_c + (1.0 - inside) * bearing_rate, x)
         left_by(T, real, hand, polar, inside, e, x_c)
-        s, sigma, joint = fit(A, w, x, x_c, null, low, high, soft_low, soft_high, eps, dq)
+        s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, dq)
         if s < 1.0:
             # The whole command is scaled, base included: what the base carries then scales with it.
             moved_with(asked, plan, real)
@@ -188,7 +194,7 @@ def step(
             for i in range(m):
                 x[i] += x_c[i]
             left_by(T, slip, hand, polar, inside, e, x_c)
-            s, sigma, joint = fit(A, w, x, x_c, null, low, high, soft_low, soft_high, eps, dq)
+            s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, dq)
             s_base = max(s, 0.0)
             kept = True
             for i in range(3):
@@ -201,7 +207,7 @@ def step(
                     s_base * (inside * w_c + (1.0 - inside) * bearing_rate), x,
                 )  # fmt: skip
                 left_by(T, real, hand, polar, inside, e, x_c)
-                again, sigma, other = fit(A, w, x, x_c, null, low, high, soft_low, soft_high, eps, dq)
+                again, sigma, other = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, dq)
                 if again < 1.0:
                     joint = other
                     s = s_base * again if again >= 0.0 else -1.0
