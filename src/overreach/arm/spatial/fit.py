@@ -38,16 +38,16 @@ def null_share(a: Array, b: Array, c: Array, low: Array, high: Array) -> float:
 
 def fit(
     A: Array, w: Array, x: Array, x_c: Array, null: Array, most_null: Array, low: Array, high: Array, soft_low: Array,
-    soft_high: Array, eps: float, out: Array,
+    soft_high: Array, eps: float, B: Array, out: Array,
 ) -> tuple[float, float, int]:  # fmt: skip
     """Write rates for s x + x_c into `out` (n,), within [low, high]; return (s, sigma, the joint that limits or -1).
 
     x: what may be scaled; x_c: what may not; null: wanted rates of which only what does not move the hand is used, at
     most `most_null` of each joint, and only as far as the rates stay within the soft bounds too, if they can. Where not
-    even s = 0 fits, each joint brakes as its own bounds allow, and s is -1.
+    even s = 0 fits, each joint brakes as its own bounds allow, and s is -1. B (m, m): the inverse over all joints.
     """
     m, n = A.shape
-    B, y, of_joints = np.empty((m, m)), np.empty(m), np.empty((5, n))
+    y, of_joints = np.empty(m), np.empty((5, n))
     a, b, c, free, held = of_joints[0], of_joints[1], of_joints[2], of_joints[3], of_joints[4]
     free[:], held[:] = 1.0, 0.0
     sigma = inverse(A, w, free, eps, B)
@@ -76,18 +76,18 @@ def fit(
             out[k] = a[k] + b[k] + part * c[k]
         return 1.0, sigma, -1
 
-    best, limiting = -1.0, -1
+    best, limiting, C = -1.0, -1, np.empty((m, m))
     for attempt in range(n - m + 1):
         if attempt > 0:
-            inverse(A, w, free, eps, B)
-            rates(A, w, free, B, x, a)
+            inverse(A, w, free, eps, C)
+            rates(A, w, free, C, x, a)
             for i in range(m):
                 total = x_c[i]
                 for k in range(n):
                     if free[k] == 0.0:
                         total -= A[i, k] * held[k]
                 y[i] = total
-            rates(A, w, free, B, y, b)
+            rates(A, w, free, C, y, b)
             for k in range(n):
                 if free[k] == 0.0:
                     b[k] = held[k]

@@ -6,13 +6,13 @@ Small arrays are slow in numpy: what is a few floats stays floats, and one produ
 from __future__ import annotations
 
 import math
+from operator import add
 from typing import final
 
 import numpy as np
 
 from overreach.arm.spatial import task
-from overreach.arm.spatial.inverse import SLIGHT, damping_beside
-from overreach.arm.spatial.lean_fit import Fit
+from overreach.arm.spatial.lean_fit import Fit, Floats
 from overreach.arm.spatial.lean_kinematics import Kinematics
 from overreach.arm.spatial.room import ENDLESS, NEAR_HOME, NULL_SPEED, OFF_LIMITS, SPEED, WEIGHT
 from overreach.arm.spatial.screws import Array
@@ -40,6 +40,7 @@ from overreach.arm.spatial.step import (
     R_HOME,
     S_X,
     S_Y,
+    SETUP,
     SIN,
     SLIGHTLY,
     SLIP,
@@ -55,6 +56,7 @@ from overreach.arm.spatial.step import (
     half_turn,
     reach_for,
 )
+from overreach.arm.spatial.turning import yawed
 
 Three = tuple[float, float, float]
 
@@ -68,27 +70,23 @@ class Lean:
         self.forward, self._pose = kinematics.forward, kinematics.pose
         self._n = screws.shape[0]
         self._setup = setup.tolist()
-        self._held = int(setup[HELD])
+        self._held, self._ell = int(setup[HELD]), float(setup[ELL])
         self._m = task.count(self._held)
         self._w = limits[:, WEIGHT].copy()
         self._speed = limits[:, SPEED].tolist()
         self._most_null = (NULL_SPEED * limits[:, SPEED]).tolist()
         self._joints = [_joint(row, setup[MARGIN], setup[NULL_GAIN]) for row in limits.tolist()]
-        self._R_home = setup[R_HOME : R_HOME + 9].reshape(3, 3)
+        self._R_home = setup[R_HOME:SETUP].reshape(3, 3)
         self._approach = setup[APPROACH : APPROACH + 3]
         self._lengths = np.array([1.0, 1.0, 1.0, setup[ELL], setup[ELL], setup[ELL]])[:, None]
 
-    def _attitude(self, yaw: float) -> Array:
-        c, s = math.cos(yaw), math.sin(yaw)
-        R: Array = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))) @ self._R_home
-        return R
-
-    def _task(self, bearing: float, R: Array) -> Array | None:
+    def _task(self, bearing: float, yaw: float) -> Array | None:
         """Return the rows of the turnings that are held, (m - 3, 3); None for all of them."""
         if self._held == task.WHOLE:
             return None
-        T = np.empty((self._m, 6))
-        task.rows(self._held, bearing, R.ravel(), self._approach, self._setup[ELL], T)
+        R, T = np.empty(9), np.empty((self._m, 6))
+        yawed(self._setup[R_HOME:], yaw, R)
+        task.rows(self._held, bearing, R, self._approach, self._ell, T)
         return T[3:, 3:]
 
     def _rows(self, T: Array | None, J: Array) -> Array:
@@ -96,16 +94,26 @@ class Lean:
             return np.asarray(J * self._lengths)
         return np.concatenate((J[:3], T @ J[3:]))
 
-    def _asks(self, T: Array | None, v: Three, turning: Three) -> Array:
+    def _asks(self, T: Array | None, v: Three, turning: Three) -> Floats:
         """Return the task of a velocity and a turning."""
         if T is None:
-            ell = self._setup[ELL]
-            return np.array((*v, ell * turning[0], ell * turning[1], ell * turning[2]))
-        return np.concatenate((v, T @ turning))
+            ell = self._ell
+            return [*v, ell * turning[0], ell * turning[1], ell * turning[2]]
+        return [*v, *(T @ turning).tolist()]
+
+    def _apart(self, hand: Array, yaw: float) -> Three:
+        """Return the rotation vector from a hand to Rz(yaw) R_home; see `turning.apart`."""
+        (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = (self._R_home @ hand[:9].reshape(3, 3).T).tolist()
+        c, s = math.cos(yaw), math.sin(yaw)
+        x, y, z = m21 - s * m02 - c * m12, c * m02 - s * m12 - m20, s * m00 + c * m10 - c * m01 + s * m11
+        sine = 0.5 * math.sqrt(x * x + y * y + z * z)
+        angle = math.atan2(sine, 0.5 * (c * m00 - s * m10 + s * m01 + c * m11 + m22 - 1.0))
+        factor = 0.5 if sine < 1e-9 else 0.5 * angle / sine
+        return factor * x, factor * y, factor * z
 
     def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         """See `step.step`."""
-        n, m, setup = self._n, self._m, self._setup
+        n, m, setup, ell = self._n, self._m, self._setup, self._ell
         ask = asked.tolist()
         dt = ask[DT]
         x_h, y_h, z_h = hand[9:].tolist()
@@ -113,19 +121,16 @@ class Lean:
         c, s_ = x_h / l, y_h / l
         bearing = math.atan2(y_h, x_h)
         f, inside = task.yielding(ask[DELTA], setup[D]) if setup[D] > 0.0 else (0.0, 0.0)
-        R = self._attitude(bearing + f)
-        e_x, e_y, e_z = _apart(R, hand)
+        e_x, e_y, e_z = self._apart(hand, bearing + f)
         k_r = setup[K_R]
         e = (e_x * k_r, e_y * k_r, e_z * k_r)
-        T = self._task(bearing, R)
+        T = self._task(bearing, bearing + f)
         A = self._rows(T, J)
         rates = ask[ASKED:]
-        low, high, null, change = _room(self._joints, q.tolist(), dt)
-        soft_low = [max(one, before - most) for one, before, most in zip(low, rates, change, strict=True)]
-        soft_high = [min(one, before + most) for one, before, most in zip(high, rates, change, strict=True)]
+        low, high, soft_low, soft_high, null, change = _room(self._joints, q.tolist(), rates, dt)
         fit = Fit(A, self._w, null, self._most_null, low, high, soft_low, soft_high, setup[EPS])
 
-        def left_by(v_x: float, v_y: float, w: float, e: Three) -> Array:
+        def left_by(v_x: float, v_y: float, w: float, e: Three) -> Floats:
             v_x, v_y = v_x - w * y_h, v_y + w * x_h
             rate = (c * v_y - s_ * v_x) / l
             return self._asks(T, (-v_x, -v_y, 0.0), (e[0], e[1], e[2] - inside * w - (1.0 - inside) * rate))
@@ -133,7 +138,7 @@ class Lean:
         was_base, step_base = ask[WAS : WAS + 3], ask[STEP : STEP + 3]
         slip = _moved(ask, *ask[SLIP : SLIP + 3])
         scale, joint, why, off_v, off_w = 0.0, -1, FINE, 0.0, 0.0
-        hand_1, J_1, places = np.empty(12), np.empty((6, n)), np.empty((n, 3))
+        hand_1 = np.empty(12)
         for attempt in range(ATTEMPTS):
             part = 0.0 if attempt == ATTEMPTS - 1 else 0.5**attempt
             u_x, u_y, u_z = [part * one for one in ask[U : U + 3]]
@@ -145,14 +150,14 @@ class Lean:
             x = self._asks(T, (u_x, u_y, u_z), (0.0, 0.0, rate))
             scale, joint, dq = fit.fit(x, left_by(*real, e))
             if scale < 1.0:
-                x_b = x + left_by(*_moved(ask, *plan), (0.0, 0.0, 0.0))
+                x_b = list(map(add, x, left_by(*_moved(ask, *plan), (0.0, 0.0, 0.0))))
                 scale, joint, dq = fit.fit(x_b, left_by(*slip, e))
                 s_base = max(scale, 0.0)
                 wanted = [s_base * one for one in plan]
                 base = [reach_for(*one) for one in zip(wanted, was_base, step_base, strict=True)]
                 real = _plus(_moved(ask, *base), slip)
                 if base != wanted:
-                    again, other, dq = fit.fit(s_base * x, left_by(*real, e))
+                    again, other, dq = fit.fit([s_base * one for one in x], left_by(*real, e))
                     if again < 1.0:
                         joint = other
                         scale = s_base * again if again >= 0.0 else -1.0
@@ -177,28 +182,20 @@ class Lean:
             if setup[D] > 0.0:
                 turned_by = half_turn(bearing_1 - bearing) + (real[2] - scale * w_c) * dt
                 f_1, _ = task.yielding(half_turn(ask[DELTA] - turned_by), setup[D])
-            R_1 = self._attitude(bearing_1 + f_1)
-            T_1 = self._task(bearing_1, R_1)
-            now = np.array(dq)
-            self.forward(q + now * dt, hand_1, J_1, places)
-            missing, size = self._missing(T_1, place, R_1, hand_1)
+            yaw_1 = bearing_1 + f_1
+            T_1 = self._task(bearing_1, yaw_1)
+            self._pose(q + np.array(dq) * dt, hand_1)
+            missing, size = self._missing(T_1, place, yaw_1, hand_1)
             if why != CHANGING:
-                if size > SMALL_TURN * setup[ELL]:
-                    missing[3:] = 0.0
-                w = self._w
+                if size > SMALL_TURN * ell:
+                    missing[3:] = [0.0] * (m - 3)
                 free = [a + AT_BOUND < one < b - AT_BOUND for one, a, b in zip(dq, low, high, strict=True)]
-                if m <= sum(free) < n:
-                    w = w * np.array(free, float)
-                A_1 = self._rows(T_1, J_1)
-                A_w = A_1 * w
-                G = A_w @ A_1.T
-                G.flat[:: m + 1] += damping_beside(fit.sigma, setup[EPS]) + SLIGHT * float(G.trace())
-                now = now + A_w.T @ np.linalg.solve(G, missing) / dt
-                dq = _within(now.tolist(), low, high, rates, change)
+                more = fit.more(missing, free if m <= sum(free) < n else None)
+                dq = _within([one + x / dt for one, x in zip(dq, more, strict=True)], low, high, rates, change)
                 self._pose(q + np.array(dq) * dt, hand_1)
-                missing, size = self._missing(T_1, place, R_1, hand_1)
+                missing, size = self._missing(T_1, place, yaw_1, hand_1)
             off_v = math.sqrt(missing[0] ** 2 + missing[1] ** 2 + missing[2] ** 2) / dt
-            off_w = size / setup[ELL]
+            off_w = size / ell
             scale *= part
             if why == CHANGING:
                 scale *= fraction
@@ -212,14 +209,14 @@ class Lean:
         out[:n] = dq
         out[n:] = (*base, scale, fit.sigma, joint, why, off_v, off_w, f)
 
-    def _missing(self, T: Array | None, place: Three, R: Array, hand: Array) -> tuple[Array, float]:
-        e_x, e_y, e_z = _apart(R, hand)
+    def _missing(self, T: Array | None, place: Three, yaw: float, hand: Array) -> tuple[Floats, float]:
+        """See `step.missing`, for the attitude Rz(yaw) R_home."""
         x, y, z = hand[9:].tolist()
-        missing = self._asks(T, (place[0] - x, place[1] - y, place[2] - z), (e_x, e_y, e_z))
-        return missing, math.hypot(*missing[3:].tolist())
+        missing = self._asks(T, (place[0] - x, place[1] - y, place[2] - z), self._apart(hand, yaw))
+        return missing, math.hypot(*missing[3:])
 
 
-def _joint(limits: list[float], margin: float, gain: float) -> tuple[float, ...]:
+def _joint(limits: Floats, margin: float, gain: float) -> tuple[float, ...]:
     """Return what `_room` needs of one joint."""
     lower, upper, speed, braking, change, home, weight = limits
     half = 0.5 * (upper - lower)
@@ -227,40 +224,47 @@ def _joint(limits: list[float], margin: float, gain: float) -> tuple[float, ...]
     half = 1.0 if endless else half
     return (
         lower + margin, upper - margin, speed, braking, change, home, 0.5 * (lower + upper), half,
-        0.0 if endless else OFF_LIMITS, -gain * weight,
+        0.0 if endless else OFF_LIMITS, -gain * weight / half, speed * speed / (2.0 * braking),
     )  # fmt: skip
 
 
 def _room(
-    joints: list[tuple[float, ...]], q: list[float], dt: float
-) -> tuple[list[float], list[float], list[float], list[float]]:
-    """Return low and high of `room.bounds`, the null rates of `room.downhill`, and greatest changes."""
-    lows, highs, nulls, changes = [], [], [], []
+    joints: list[tuple[float, ...]], q: Floats, rates: Floats, dt: float
+) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+    """Return low, high of `room.bounds`, both within what can change, `room.downhill`, and the greatest changes."""
+    lows, highs, soft_lows, soft_highs, nulls, changes = [], [], [], [], [], []
     square = dt * dt
-    for (first, last, speed, braking, change, home, middle, half, off, pull), x in zip(joints, q, strict=True):
-        ahead, behind = last - x, x - first
-        stops = braking * (math.sqrt(square + 2.0 * ahead / braking) - dt) if ahead > 0.0 else 0.0
-        highs.append(stops if stops < speed else speed)
-        stops = braking * (math.sqrt(square + 2.0 * behind / braking) - dt) if behind > 0.0 else 0.0
-        lows.append(-stops if stops < speed else -speed)
+    for (first, last, speed, braking, change, home, middle, half, off, pull, way), x, before in zip(
+        joints, q, rates, strict=True
+    ):
+        ahead, behind, free = last - x, x - first, speed * dt + way
+        high, low = speed, -speed
+        if ahead < free:  # nearer to the limit than the way that it takes to stop
+            high = braking * (math.sqrt(square + 2.0 * ahead / braking) - dt) if ahead > 0.0 else 0.0
+        if behind < free:
+            low = -braking * (math.sqrt(square + 2.0 * behind / braking) - dt) if behind > 0.0 else 0.0
+        most = change * dt
         y = (x - middle) / half
         y2 = y * y
-        nulls.append(pull * (NEAR_HOME * (x - home) / half + off * y2 * y2 * y2 * y) / half)
-        changes.append(change * dt)
-    return lows, highs, nulls, changes
+        lows.append(low)
+        highs.append(high)
+        soft_lows.append(low if low > before - most else before - most)
+        soft_highs.append(high if high < before + most else before + most)
+        nulls.append(pull * (NEAR_HOME * (x - home) / half + off * y2 * y2 * y2 * y))
+        changes.append(most)
+    return lows, highs, soft_lows, soft_highs, nulls, changes
 
 
-def _within(
-    rates: list[float], low: list[float], high: list[float], was: list[float], change: list[float]
-) -> list[float]:
+def _within(rates: Floats, low: Floats, high: Floats, was: Floats, change: Floats) -> Floats:
     """Return rates held to their bounds, then to how much they can change."""
-    return [
-        max(before - most, min(before + most, max(a, min(b, one))))
-        for one, a, b, before, most in zip(rates, low, high, was, change, strict=True)
-    ]
+    held = []
+    for one, a, b, before, most in zip(rates, low, high, was, change, strict=True):
+        x = a if one < a else b if one > b else one
+        held.append(before - most if x < before - most else before + most if x > before + most else x)
+    return held
 
 
-def _moved(ask: list[float], v_x: float, v_y: float, w: float) -> Three:
+def _moved(ask: Floats, v_x: float, v_y: float, w: float) -> Three:
     """See `step.moved_with`."""
     v_x, v_y = v_x - w * ask[S_Y], v_y + w * ask[S_X]
     return ask[COS] * v_x + ask[SIN] * v_y, ask[COS] * v_y - ask[SIN] * v_x, w
@@ -268,16 +272,6 @@ def _moved(ask: list[float], v_x: float, v_y: float, w: float) -> Three:
 
 def _plus(one: Three, other: Three) -> Three:
     return one[0] + other[0], one[1] + other[1], one[2] + other[2]
-
-
-def _apart(goal: Array, hand: Array) -> Three:
-    """See `turning.apart`."""
-    (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = (goal @ hand[:9].reshape(3, 3).T).tolist()
-    x, y, z = r21 - r12, r02 - r20, r10 - r01
-    sine = 0.5 * math.sqrt(x * x + y * y + z * z)
-    angle = math.atan2(sine, 0.5 * (r00 + r11 + r22 - 1.0))
-    factor = 0.5 if sine < 1e-9 else 0.5 * angle / sine
-    return factor * x, factor * y, factor * z
 
 
 def _goal(hand: Three, move: Three, base: Three, dt: float) -> Three:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from operator import add
 from typing import Any, final
 
 import numpy as np
 
 from overreach.arm.spatial.fit import LOOSE, SLACK
-from overreach.arm.spatial.inverse import SLIGHT, damping
+from overreach.arm.spatial.inverse import SLIGHT, damping, damping_beside
 from overreach.arm.spatial.screws import Array
 
 Floats = list[float]
@@ -38,20 +39,30 @@ class Fit:
         m, n = A.shape
         self._c: Floats = [0.0] * n
         if n > m:
-            c = (np.array(null) - P @ (A @ null)).tolist()
+            wanted = np.array(null)
+            c = (wanted - P @ (A @ wanted)).tolist()
             beyond = max(1.0, *[abs(one) / most for one, most in zip(c, most_null, strict=True)])
             self._c = [one / beyond for one in c]
 
-    def fit(self, x: Array, x_c: Array) -> tuple[float, int, Floats]:
+    def more(self, x: Floats, free: list[bool] | None) -> Floats:
+        """Return rates for x: of all joints or, damped a little, of those that are free."""
+        if free is None:
+            return (self._P @ np.array(x)).tolist()  # type: ignore[no-any-return]
+        A_w = self._A * (self._w * np.array(free, float))
+        G = A_w @ self._A.T
+        G.flat[:: G.shape[0] + 1] += damping_beside(self.sigma, self._eps) + SLIGHT * _trace(G)
+        return (A_w.T @ np.linalg.solve(G, x)).tolist()  # type: ignore[no-any-return]
+
+    def fit(self, x: Floats, x_c: Floats) -> tuple[float, int, Floats]:
         """Return (s, the joint that limits or -1, rates)."""
-        a, b = self._P @ x, self._P @ x_c
-        whole = (a + b).tolist()
+        a, b = (self._P @ np.array((x, x_c)).T).T.tolist()
+        whole = list(map(add, a, b))
         part = _null_share(whole, self._c, *self._soft)
         if part < 0.0:
             part = _null_share(whole, self._c, *self._bounds)
         if part >= 0.0:
             return 1.0, -1, [now + part * more for now, more in zip(whole, self._c, strict=True)]
-        return self._saturated(x, x_c, a, b)
+        return self._saturated(np.array(x), np.array(x_c), np.array(a), np.array(b))
 
     def _saturated(self, x: Array, x_c: Array, a: Array, b: Array) -> tuple[float, int, Floats]:
         A, (low, high) = self._A, self._bounds
@@ -116,9 +127,9 @@ def _null_share(whole: Floats, c: Floats, low: Floats, high: Floats) -> float:
 
 def _inverse(G: Array, eps: float) -> tuple[Array, float]:
     """Return the damped inverse of G and sigma; see `inverse.inverse`."""
-    G.flat[:: G.shape[0] + 1] += SLIGHT * float(G.trace())
+    G.flat[:: G.shape[0] + 1] += SLIGHT * _trace(G)
     B: Any = np.linalg.inv(G)
-    trace = float(B.trace())
+    trace = _trace(B)
     sigma = 1.0 / math.sqrt(trace)
     if sigma < eps:
         C = B / trace
@@ -131,3 +142,7 @@ def _inverse(G: Array, eps: float) -> tuple[Array, float]:
             G.flat[:: G.shape[0] + 1] += damping(sigma, eps)
             B = np.linalg.inv(G)
     return B, sigma
+
+
+def _trace(G: Array) -> float:
+    return float(sum(G.diagonal().tolist()))  # quicker than numpy's own for so few

@@ -6,8 +6,8 @@ Scalar: to be compiled. Its twin with numpy is `step_numpy`; both follow one spe
     base      what really happens: the plan, held to what its acceleration allows, and its slip
     x         s u, less what the base carries, plus K_R log(R R_hand^T): s is one scale for the whole command
     rates     `fit`; where s < 1, the base is scaled as well and the arm solved again
-    q_1       q + rates dt; the base moves on its exact arc; the pose still missing there is made up for by one more
-              inverse over the joints that are not at a bound (a chord-Newton step)
+    q_1       q + rates dt; the base moves on its exact arc; the pose still missing there is made up for by the same
+              inverse, or by one over the joints that are not at a bound (a chord-Newton step)
     verdict   of the forward kinematics at the end: where the hand is not where s u takes it, smaller s are tried, and
               at last the arm only holds its attitude
 
@@ -137,10 +137,10 @@ def step(
     held, dt = int(setup[HELD]), asked[DT]
     m = count(held)
     # A few blocks rather than many small ones: asking for memory is a third of the cost of all this.
-    of_task, of_hand, of_joints = np.empty((2, m, 6)), np.empty((2, m, n)), np.empty((11, n))
+    of_task, of_joints = np.empty((2, m, 6)), np.empty((11, n))
     of_rows, of_space, poses = np.empty((2, m)), np.empty((10, 3)), np.empty((2, 12))
-    B, J_1, places = np.empty((m, m)), np.empty((6, n)), np.empty((n, 3))
-    T, T_1, A, A_1, x, x_c = of_task[0], of_task[1], of_hand[0], of_hand[1], of_rows[0], of_rows[1]
+    A, B, J_1, places = np.empty((m, n)), np.empty((m, m)), np.empty((6, n)), np.empty((n, 3))
+    T, T_1, x, x_c = of_task[0], of_task[1], of_rows[0], of_rows[1]
     low, high, soft_low, soft_high = of_joints[0], of_joints[1], of_joints[2], of_joints[3]
     null, most_null, dq, q_1, more = of_joints[4], of_joints[5], of_joints[6], of_joints[7], of_joints[8]
     free, w = of_joints[9], of_joints[10]
@@ -186,7 +186,7 @@ def step(
         bearing_rate = (polar[0] * u[1] - polar[1] * u[0]) / polar[2]
         task_of(T, u[0], u[1], u[2], inside * w_c + (1.0 - inside) * bearing_rate, x)
         left_by(T, real, hand, polar, inside, e, x_c)
-        s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, dq)
+        s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
         if s < 1.0:
             # The whole command is scaled, base included: what the base carries then scales with it.
             moved_with(asked, plan, real)
@@ -194,7 +194,7 @@ def step(
             for i in range(m):
                 x[i] += x_c[i]
             left_by(T, slip, hand, polar, inside, e, x_c)
-            s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, dq)
+            s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
             s_base = max(s, 0.0)
             kept = True
             for i in range(3):
@@ -207,7 +207,7 @@ def step(
                     s_base * (inside * w_c + (1.0 - inside) * bearing_rate), x,
                 )  # fmt: skip
                 left_by(T, real, hand, polar, inside, e, x_c)
-                again, sigma, other = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, dq)
+                again, sigma, other = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
                 if again < 1.0:
                     joint = other
                     s = s_base * again if again >= 0.0 else -1.0
@@ -250,12 +250,11 @@ def step(
             for k in range(n):
                 free[k] = 1.0 if low[k] + AT_BOUND < dq[k] < high[k] - AT_BOUND else 0.0
                 many += int(free[k])
-            if many < m:
-                for k in range(n):
-                    free[k] = 1.0
-            product(T_1, J_1, A_1)
-            inverse_beside(A_1, w, free, damping_beside(sigma, eps), B)
-            rates(A_1, w, free, B, x, more)
+            if m <= many < n:
+                inverse_beside(A, w, free, damping_beside(sigma, eps), B)
+            else:
+                free[:] = 1.0
+            rates(A, w, free, B, x, more)
             for k in range(n):
                 dq[k] = max(low[k], min(high[k], dq[k] + more[k] / dt))
                 dq[k] = reach_for(dq[k], was[k], limits[k, CHANGE] * dt)
