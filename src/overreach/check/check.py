@@ -19,6 +19,7 @@ from overreach.errors import SetupError
 from overreach.model.catalogue import load, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.mujoco.contact import Contacts
+from overreach.model.workspace import Workspace
 from overreach.types import Record
 
 REACH_M = 0.1
@@ -73,15 +74,19 @@ HALF_DISTANCE = 0.5
 """Contacts are looked for at this part of the distance that the workspace was measured with."""
 
 
-def _one(which: str, kind: str, seed: int, number: int) -> Judged:
+def _one(which: str, kind: str, seed: int, guess: Workspace | None, number: int) -> Judged:
     model, contacts = _robot(which)
+    if guess is not None:
+        model = model.driven_in(guess)
     driven = drive(model, stream(kind, seed, number, model.command))
     return judge(model, driven, lambda q: bool(contacts.touching(q)))
 
 
-def judged(which: str, kind: str, streams: int, seed: int, jobs: int = 0) -> Iterator[Judged]:
+def judged(
+    which: str, kind: str, streams: int, seed: int, jobs: int = 0, guess: Workspace | None = None
+) -> Iterator[Judged]:
     """Yield each stream's judgement, in order, by `jobs` processes (0: one a core; 1: this one)."""
-    one = partial(_one, which, kind, seed)
+    one = partial(_one, which, kind, seed, guess)
     jobs = jobs or min(streams, os.cpu_count() or 1)
     if jobs == 1:
         yield from map(one, range(streams))
@@ -97,12 +102,16 @@ def check(
     kind: str = "smooth",
     jobs: int = 0,
     progress: Callable[[int], None] = lambda _: None,
+    guess: Workspace | None = None,
 ) -> Found:
-    """Return what `streams` streams came to on the robot `which`. Raises SetupError."""
+    """Return what `streams` streams came to on the robot `which`. Raises SetupError.
+
+    guess: a workspace that is driven in instead of the one that was measured, to see what measuring is good for.
+    """
     warm()
     model, _ = _robot(which)
     each = []
-    for one in judged(which, kind, streams, seed, jobs):
+    for one in judged(which, kind, streams, seed, jobs, guess):
         each.append(one)
         progress(len(each))
     ok = np.concatenate([one.ok for one in each]).astype(bool)

@@ -60,6 +60,10 @@ class DescribedRobot:
                     f"a workspace of {self.name} lies inside the measured one: l = {own.l_min:g} to {own.l_max:g} m, "
                     f"psi = {own.psi_min:g} to {own.psi_max:g} rad, z = {own.z_min:g} to {own.z_max:g} m"
                 )
+        return self.driven_in(workspace)
+
+    def driven_in(self, workspace: Workspace) -> DescribedRobot:
+        """Return the same with any workspace: whether the arm can hold its hand there is not looked at."""
         return DescribedRobot(
-            self.name, self.summary, self.arm, mount, self.base, workspace, self.command, self.gripper, self.mode
+            self.name, self.summary, self.arm, self.mount, self.base, workspace, self.command, self.gripper, self.mode
         )
