@@ -13,8 +13,9 @@ from matplotlib import pyplot as plt
 from playwright.sync_api import Browser
 
 from docs.headline import BEGIN, END
+from overreach import look
 from overreach.errors import SetupError
-from overreach.reproduce import chatter, lab, look, run
+from overreach.reproduce import chatter, lab, run
 from overreach.reproduce.words import number
 
 EXACT = 1e-12

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 
 from overreach.law.blend import Tanh
 from overreach.law.laws import Exact, Paper
+from overreach.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
 from overreach.reproduce.lab import Lab, Section
-from overreach.reproduce.look import ARM, BASE, HAND, INK, MUTED, STOP, panels, thin
 from overreach.run.simulate import Run
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from overreach.law.blend import LN_99, rise_smoothstep, rise_tanh
+from overreach.look import ARM, BASE, HAND, MUTED, limit, panels
 from overreach.model.planar import planar
 from overreach.reproduce.lab import Lab, Section
-from overreach.reproduce.look import ARM, BASE, HAND, MUTED, limit, panels
 
 SHARP = ((10.0, HAND), (50.0, BASE), (100.0, ARM))
 WIDTH = 0.1

@@ -5,8 +5,8 @@ from __future__ import annotations
 from overreach.law.blend import Smoothstep, Tanh
 from overreach.law.body import WholeBody
 from overreach.law.laws import Exact, Paper, Switch
+from overreach.look import BASE, HAND, panels
 from overreach.reproduce.lab import Lab, Section, Table
-from overreach.reproduce.look import BASE, HAND, panels
 from overreach.run.metrics import total_variation
 from overreach.run.simulate import Run
 

@@ -6,8 +6,8 @@ from typing import Any
 
 from overreach.bench.machine import describe
 from overreach.bench.run import PAPER, time_steps
+from overreach.look import ARM, BASE, HAND, MUTED, panels
 from overreach.reproduce.lab import Lab, Section, Table
-from overreach.reproduce.look import ARM, BASE, HAND, MUTED, panels
 from overreach.reproduce.words import number
 
 ROUNDS, SAMPLES = 5, 300

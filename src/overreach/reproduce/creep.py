@@ -8,8 +8,8 @@ import msgspec
 
 from overreach.law.blend import Blend, Smoothstep, Tanh
 from overreach.law.laws import Exact
+from overreach.look import ARM, BASE, HAND, INK, STOP, legend, limit, panels, thin
 from overreach.reproduce.lab import Lab, Section
-from overreach.reproduce.look import ARM, BASE, HAND, INK, STOP, legend, limit, panels, thin
 from overreach.run.scenario import load_scenario
 
 BLENDS: tuple[tuple[str, Blend, str], ...] = (

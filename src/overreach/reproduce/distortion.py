@@ -9,9 +9,9 @@ import numpy as np
 from overreach.law.authority import ee_velocity
 from overreach.law.blend import Tanh
 from overreach.law.laws import Exact, Paper, Share
+from overreach.look import ARM, BASE, INK, legend, limit, panels
 from overreach.model.planar import planar
 from overreach.reproduce.lab import Lab, Section
-from overreach.reproduce.look import ARM, BASE, INK, legend, limit, panels
 
 BEYOND = 0.95
 """Where it is drawn: well beyond L_max = 0.85 m, where the base has everything (mu = 1 to 5e-5)."""

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from overreach.files import write_text
 from overreach.law.body import WholeBody
-from overreach.reproduce import look
+from overreach.look import as_svg, check, inline
 from overreach.run.files import write_csv, write_table
 from overreach.run.scenario import Scenario, load_scenario
 from overreach.run.simulate import Run, simulate
@@ -75,9 +75,9 @@ class Lab:
 
     def picture(self, name: str, figure: Figure, caption: str) -> Picture:
         """Leave a figure as figures/NAME.svg and .png, and return it for the page."""
-        look.check(name, figure)
-        svg = look.as_svg(figure, name)
+        check(name, figure)
+        svg = as_svg(figure, name)
         write_text(self.out / "figures" / f"{name}.svg", svg)
         figure.savefig(self.out / "figures" / f"{name}.png", dpi=140, metadata={"Software": "overreach"})
         plt.close(figure)
-        return Picture(name, caption, look.inline(svg, name, caption.replace('"', "&quot;")))
+        return Picture(name, caption, inline(svg, name, caption.replace('"', "&quot;")))

@@ -9,8 +9,8 @@ import msgspec
 from matplotlib.axes import Axes
 
 from overreach.baselines.weighted import Weighted
+from overreach.look import ARM, BASE, HAND, limit, panels, thin
 from overreach.reproduce.lab import Lab, Section, Table
-from overreach.reproduce.look import ARM, BASE, HAND, limit, panels, thin
 from overreach.run.scenario import Scenario, load_scenario
 from overreach.run.simulate import Run, simulate
 from overreach.run.summary import LINES, Summary

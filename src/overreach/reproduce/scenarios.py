@@ -9,8 +9,8 @@ from matplotlib import pyplot as plt
 from scipy.special import wrightomega
 
 from overreach.law.laws import Exact
+from overreach.look import ARM, BASE, HAND, INK, MUTED, limit, thin
 from overreach.reproduce.lab import Lab, Picture, Section
-from overreach.reproduce.look import ARM, BASE, HAND, INK, MUTED, limit, thin
 from overreach.run.simulate import Run
 
 NAMES = ("outward", "inward", "left", "right")

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from overreach.law.laws import Exact, Paper
+from overreach.look import ARM, BASE, HAND, MUTED, panels, thin
 from overreach.reproduce.lab import Lab, Section
-from overreach.reproduce.look import ARM, BASE, HAND, MUTED, panels, thin
 from overreach.run.row import Row
 from overreach.run.simulate import Run
 
