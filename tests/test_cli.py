@@ -135,6 +135,19 @@ def test_lists() -> None:
     assert all(name in doctor for name in ("python", "nicegui", "eclipse-zenoh", "SCHED_FIFO"))
 
 
+def test_two_mujocos_are_told(tmp_path: Path) -> None:
+    """`doctor` says where another version of all of MuJoCo lies over the core that is used here, and what to do."""
+    assert "one mujoco" not in overreach("doctor").stdout
+    (folder := tmp_path / "mujoco-3.1.0.dist-info").mkdir()
+    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: mujoco\nVersion: 3.1.0\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "overreach", "doctor"], env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        stdout=subprocess.PIPE, text=True, check=True, timeout=60,
+    )  # fmt: skip
+    assert "mujoco 3.1.0 beside mujoco-core 4" in done.stdout
+    assert "pip install mujoco==4" in done.stdout
+
+
 def test_version() -> None:
     """`--version` prints the version of the package."""
     from overreach import __version__

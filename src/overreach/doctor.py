@@ -15,12 +15,16 @@ NEEDED = {
     "nicegui": "the page",
     "eclipse-zenoh": "the link between the halves",
     "msgspec": "messages",
+    "mujoco-core": "robots from their own models",
+    "numpy": "robots from their own models",
     "tyro": "this command line",
 }
 OPTIONAL = {
     "figures": ("matplotlib", "reproduce"),
     "qp": ("qpsolvers", "the laws qp and holistic, reproduce, bench"),
     "fast": ("numba", "compiled steps, bench"),
+    "models": ("mujoco-menagerie", "the robot tiago"),
+    "peers": ("mink", "bench --robot"),
 }
 """Extras: the package that tells whether it is there, and what it is for."""
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "firefox", "xdg-open", "open")
@@ -43,6 +47,17 @@ def _extra(extra: str, package: str, job: str) -> str:
         return _line(True, package, f"{version(package)}  ({job})")
     except PackageNotFoundError:
         return f"  not in   {package:<22}({job})  ->  {pip_line(extra)}"
+
+
+def _one_mujoco() -> list[str]:
+    """Return a line where a whole MuJoCo of another version lies in the same folder: the two overwrite each other."""
+    try:
+        whole, core = version("mujoco"), version("mujoco-core")
+    except PackageNotFoundError:
+        return []
+    if whole == core:
+        return []
+    return [_line(False, "one mujoco", f"mujoco {whole} beside mujoco-core {core}", f"pip install mujoco=={core}")]
 
 
 def _real_time() -> str:
@@ -68,6 +83,7 @@ def report() -> str:
         f"overreach {__version__} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         _line(python_fits, "python", platform.python_version(), "install Python 3.11 or newer"),
         *(_package(name, job) for name, job in NEEDED.items()),
+        *_one_mujoco(),
         *(_extra(extra, *what) for extra, what in OPTIONAL.items()),
         _line(browser is not None, "browser", browser or "none found", "open the printed address elsewhere"),
         _real_time(),
