@@ -310,6 +310,7 @@ def test_what_a_new_gate_knows() -> None:
     """At the start: no message accepted, none refused, at rest, full speed scale."""
     gate = Gate()
     assert (gate.seq, gate.refused, gate.resting, gate.speed_scale) == (0, 0, True, 1.0)
+    assert (gate.heard, gate.age) == (0, 0.0)
     gate.arm(ME, 0, 0.0)
     assert gate.accept(said(ME, 1, 1, True, 0.1, 0.0, seen=0.0), 0.0) is None
     assert gate.seq == 1
@@ -759,8 +760,22 @@ def test_a_command_is_as_old_as_the_state_that_it_echoes() -> None:
         assert gate.refused == (refusal is not None)
         assert (gate.heard, gate.seq) == (1, 0 if refusal else 1)
         assert gate.age == (0.0 if seen is None else 50.0 - seen)
+        reason = gate.tick(50.0, DT).reason
+        assert ("echoes no state of this robot side" in reason) is (seen is None or seen > 50.0)
+        assert (" s old, 0.5 s are allowed" in reason) is (seen is not None and seen < 49.5)
         # For rest, no command is too old.
         assert gate.accept(said(ME, 2, 1, False, 0.0, 0.0, seen=seen), 50.0) is None
+
+
+@pytest.mark.parametrize("other", [ME - 1, ME + 1])
+def test_what_was_heard_is_of_who_has_armed(other: int) -> None:
+    """Another operator's messages, whatever their number, change neither the newest that was heard nor its age."""
+    gate = Gate()
+    gate.arm(ME, 0, 50.0)
+    gate.accept(said(ME, 3, 1, True, 0.3, 0.0, seen=49.9), 50.0)
+    assert (gate.heard, gate.age) == (3, pytest.approx(0.1))
+    gate.accept(said(other, 8, 1, True, 0.3, 0.0, seen=49.8), 50.0)
+    assert (gate.heard, gate.age) == (3, pytest.approx(0.1))
 
 
 def test_the_usual_bound_is_0_4_s() -> None:

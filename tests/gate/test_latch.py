@@ -15,7 +15,7 @@ def test_a_new_latch_is_disarmed_and_nobodys() -> None:
     """At the start nothing is latched, nobody has armed, and no press is spent."""
     latch = StopLatch()
     assert (latch.stopped, latch.fault, latch.armed, latch.latched) == (False, "", False, False)
-    assert (latch.operator, latch.spent_grip) == (0, 0)
+    assert (latch.operator, latch.spent_grip, latch.paused) == (0, 0, False)
 
 
 def test_arming_notes_who_and_which_press() -> None:
@@ -51,6 +51,18 @@ def test_only_a_reset_unlatches() -> None:
         assert (latch.latched, latch.stopped, latch.fault, latch.armed) == (False, False, "", False)
         latch.arm(8, 9)
         assert (latch.armed, latch.operator, latch.spent_grip) == (True, 8, 9)
+
+
+def test_a_pause_lasts_until_somebody_arms() -> None:
+    """A pause disarms, but latches nothing: arming alone leads on; disarming and a reset do not."""
+    latch = armed()
+    latch.pause()
+    assert (latch.paused, latch.armed, latch.latched) == (True, False, False)
+    latch.disarm()
+    latch.reset()
+    assert latch.paused
+    latch.arm(7, 4)
+    assert (latch.paused, latch.armed) == (False, True)
 
 
 def test_the_first_fault_stays() -> None:

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -22,7 +23,7 @@ LONGEST_S = 0.6 / 3.5
 def moving(rates: tuple[float, ...] = FULL, at: float = 10.0) -> Watchdog:
     """Return one whose loop has written `rates` at `at` [s]."""
     dog = Watchdog(CHANNELS, PERIOD)
-    assert dog.take(rates, at, at + 2 * PERIOD) == rates
+    assert dog.take(rates, at, at + 2 * PERIOD, 0) == rates
     return dog
 
 
@@ -34,7 +35,7 @@ def test_what_comes_in_time_is_passed_on(writes: list[tuple[tuple[float, ...], f
     """Writes that are less than two periods apart pass unchanged, to the bit, and there is nothing else to write."""
     dog, now = Watchdog(CHANNELS, PERIOD), 10.0
     for wanted, gap in writes:
-        assert dog.take(wanted, now, now + 2 * PERIOD) == wanted
+        assert dog.take(wanted, now, now + 2 * PERIOD, 0) == wanted
         assert dog.written == wanted
         assert dog.takeover is None
         assert dog.tick(now + 0.999 * gap) is None
@@ -67,9 +68,12 @@ def test_at_rest_within_v_over_a_and_a_tick() -> None:
     dog, due = moving(), 10.0 + 2 * PERIOD
     assert dog.wakes == due
     last = 0.0
-    while not dog.resting:
+    for _ in range(1000):
+        if dog.resting:
+            break
         last = dog.wakes
         assert dog.tick(last) is not None
+    assert dog.resting
     assert 0.0 < last - due <= LONGEST_S + PERIOD + 1e-9
     assert dog.wakes == math.inf
 
@@ -125,7 +129,7 @@ def test_after_a_short_silence_it_goes_on_from_what_stands(silence: float) -> No
     stands = dog.written
     wanted = tuple(rate + 0.9 * c.change_max * PERIOD * (1 if k else -1) for k, (rate, c) in
                    enumerate(zip(stands, CHANNELS, strict=True)))  # fmt: skip
-    assert dog.take(wanted, now, now + 2 * PERIOD) == wanted
+    assert dog.take(wanted, now, now + 2 * PERIOD, 0) == wanted
     assert dog.takeover is None
 
 
@@ -137,7 +141,7 @@ def test_a_write_too_far_away_is_reached_in_steps_along_a_straight_line() -> Non
         dog.tick(now)
         now += PERIOD
     stands = dog.written
-    first = dog.take(FULL, now, now + 2 * PERIOD)
+    first = dog.take(FULL, now, now + 2 * PERIOD, 0)
     parts = [(is_ - was) / (goal - was) for is_, was, goal in zip(first, stands, FULL, strict=True)]
     assert max(parts) - min(parts) < 1e-9
     assert 0.0 < parts[0] < 1.0
@@ -152,7 +156,7 @@ def test_after_a_long_silence_only_arming_counts(silence: float, wanted: tuple[f
     dog = moving()
     now = 10.0 + silence
     for _ in range(60):
-        dog.take(wanted, now, now + 2 * PERIOD)
+        dog.take(wanted, now, now + 2 * PERIOD, 0)
         assert dog.takeover
         assert dog.takeover.latched
         now += PERIOD
@@ -164,7 +168,8 @@ def test_after_a_long_silence_only_arming_counts(silence: float, wanted: tuple[f
 
 
 def test_exactly_100_ms_is_in_time() -> None:
-    """The latch closes after AWAY_S, not at it."""
+    """The latch closes after 100 ms, not at them."""
+    assert AWAY_S == 0.1
     one, other = moving(at=0.0), moving(at=0.0)
     one.tick(AWAY_S)
     assert not one.latched
@@ -172,11 +177,53 @@ def test_exactly_100_ms_is_in_time() -> None:
     assert other.latched
 
 
+def test_what_one_period_can_just_reach_is_reached() -> None:
+    """After a ramp of its own, rates that one period of full acceleration leads to are not short of it."""
+    dog = moving()
+    dog.tick(10.0 + 2 * PERIOD)  # it takes over, and nothing has changed yet
+    assert dog.takeover == Takeover(FULL, False)
+    dog.halt()
+    whole = tuple(c.change_max * PERIOD for c in CHANNELS)
+    assert dog.take(whole, 10.012, 10.012 + 2 * PERIOD, 0) == whole
+    assert dog.takeover is None
+
+
+def test_an_older_arming_releases_nothing() -> None:
+    """Only a count of armings that is greater than any before releases the latch: not an old one, nor the same."""
+    dog = moving()
+    dog.take(FULL, 10.005, 10.005 + 2 * PERIOD, 5)
+    dog.tick(10.2)
+    for arms in (5, 4, -1, 0):
+        dog.take(FULL, 10.21, 10.21 + 2 * PERIOD, arms)
+        assert dog.latched
+    dog.take(FULL, 10.21, 10.21 + 2 * PERIOD, 6)
+    assert not dog.latched
+
+
+def test_a_clock_that_goes_back_changes_nothing() -> None:
+    """At a time before that of the last ramp the rates stand: they are not led back to where they were."""
+    dog = moving()
+    dog.tick(10.0 + 2 * PERIOD)
+    down = dog.tick(10.0 + 3 * PERIOD)
+    assert down is not None
+    assert abs(down[0]) < abs(FULL[0])
+    assert dog.tick(10.0 + 2.5 * PERIOD) == down
+
+
+@pytest.mark.parametrize("many", [2, 4])
+def test_as_many_rates_as_channels(many: int) -> None:
+    """After a ramp of its own, another number of rates than there are channels is an error of the caller."""
+    dog = moving()
+    dog.tick(10.0 + 2 * PERIOD)
+    with pytest.raises(ValueError, match="zip"):
+        dog.take((0.0,) * many, 10.011, 10.011 + 2 * PERIOD, 0)
+
+
 def test_a_robot_at_rest_is_not_latched() -> None:
     """A loop that was away from a robot that stood still goes on: there is nothing that it has missed."""
     dog = moving((0.0, 0.0, 0.0))
     assert dog.tick(12.0) is None
-    assert dog.take(FULL, 13.0, 13.0 + 2 * PERIOD) == FULL
+    assert dog.take(FULL, 13.0, 13.0 + 2 * PERIOD, 0) == FULL
     assert dog.takeover is None
 
 
@@ -193,12 +240,12 @@ def test_what_comes_past_its_time_does_not_count() -> None:
     """A write that lay about until its deadline is as good as none: it neither moves nor counts as a sign of life."""
     dog = moving()
     now = 10.0 + 2 * PERIOD + 0.001
-    assert dog.take(FULL, now, now) != FULL
+    assert dog.take(FULL, now, now, 0) != FULL
     assert dog.takeover is not None
     dog.take(FULL, 10.0 + AWAY_S + 0.001, 10.05, 5)
     assert dog.latched
     still = Watchdog(CHANNELS, PERIOD)
-    assert still.take(FULL, 5.0, 4.0) == (0.0, 0.0, 0.0)
+    assert still.take(FULL, 5.0, 4.0, 0) == (0.0, 0.0, 0.0)
     assert still.takeover is None
 
 

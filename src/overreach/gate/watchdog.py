@@ -28,12 +28,10 @@ class Watchdog:
     """
 
     def __init__(self, channels: Sequence[Channel], period: float) -> None:
-        self._guard = Guard(channels, 0.0)
+        self._guard = Guard(channels, period)
         self._period = period
         self._steps = tuple(channel.change_max * period for channel in channels)
-        self._due = math.inf
-        self._heard = math.inf
-        self._at = -math.inf
+        self._due = self._heard = self._at = math.inf  # nothing has been written yet
         self._arms = 0
         self.latched = False
         self._own = False
@@ -58,7 +56,7 @@ class Watchdog:
         """When to call `tick` next [s], if no write comes: inf if nothing moves."""
         return math.inf if self.resting else max(self._due, self._at + self._period)
 
-    def take(self, rates: Rates, now: float, due: float, arms: int = 0) -> Rates:
+    def take(self, rates: Rates, now: float, due: float, arms: int) -> Rates:
         """Return what to write for `rates` that the loop asks for at `now` [s] and that are good until `due` [s].
 
         arms: how often the loop has been armed: once more releases the latch. What comes past its `due`, or is not
@@ -108,10 +106,9 @@ class Watchdog:
 
     def _towards(self, rates: Rates) -> tuple[Rates, bool]:
         """Return the rates on the straight way to `rates` that one period can reach, and whether they fall short."""
-        part = 1.0
-        for rate, was, step in zip(rates, self.written, self._steps, strict=True):
-            if abs(rate - was) * part > step:
-                part = step / abs(rate - was)
-        if part == 1.0:
-            return rates, False
-        return tuple([was + (rate - was) * part for rate, was in zip(rates, self.written, strict=True)]), True
+        part, short = 1.0, False
+        ways = [(was, rate - was, step) for rate, was, step in zip(rates, self.written, self._steps, strict=True)]
+        for _, way, step in ways:
+            if abs(way) * part > step:
+                part, short = step / abs(way), True
+        return (tuple([was + way * part for was, way, _ in ways]) if short else rates), short
