@@ -52,7 +52,7 @@ soak: $(VENV)/.ready-dev browser
 STREAMS ?= 1000
 
 robots-check: $(VENV)/.ready-dev
-	$(BIN)/python -m tests.robots $(STREAMS) build/robots.json
+	$(BIN)/python -m tests.robots_check $(STREAMS) build/robots.json
 
 mutate: $(VENV)/.ready-mutate
 	$(BIN)/python -m tests.mutation

@@ -1,10 +1,11 @@
-"""Make the README's picture of the page, as it is: `PYTHONPATH=. .venv/bin/python docs/pictures.py`."""
+"""Make the pictures of the page and of a workspace, as they are: `PYTHONPATH=. .venv/bin/python docs/pictures.py`."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from overreach.link.endpoint import free_port
+from overreach.model.measure.command import run_workspace
 from tests.browser.chromium import chromium
 from tests.processes import half
 
@@ -14,7 +15,7 @@ WAY = ((0, -76, 3.4), (-46, -60, 2.4), (42, -64, 3.2))
 
 
 def main() -> None:
-    """Drive a little and take the picture."""
+    """Drive a little and take the picture; measure and draw."""
     HERE.mkdir(exist_ok=True)
     with half("drive", "--no-browser", "--port", str(free_port())) as drive, chromium() as browser:
         page = browser.new_page(viewport={"width": 1360, "height": 800}, color_scheme="light")
@@ -30,6 +31,7 @@ def main() -> None:
             page.mouse.move(x + dx, y + dy, steps=8)
             page.wait_for_timeout(seconds * 1_000)
         page.screenshot(path=HERE / "cockpit.png")
+    run_workspace("mobile7", "follow", find_home=False, out=None, figure=HERE / "workspace.png")
 
 
 if __name__ == "__main__":
