@@ -11,21 +11,28 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from overreach.arm.chain import Arm, Chain
 from overreach.arm.mount import Mount
 from overreach.arm.spatial import step as layout
 from overreach.arm.spatial import task
-from overreach.arm.spatial.arm import SpatialArm, turned, vector
+from overreach.arm.spatial.arm import SpatialArm, SpatialChain, turned, vector
 from overreach.arm.spatial.inverse import SLIGHT, damping, inverse, rates
 from overreach.arm.spatial.manner import TOL_V
 from overreach.arm.spatial.room import NULL_SPEED, SPEED, bounds
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.settle import Places
+from overreach.arm.spatial.settle import _vector as batched
 from overreach.arm.spatial.turning import apart, yawed
-from overreach.model.catalogue import description_of, parts_in
+from overreach.control.pilot import Pilot
+from overreach.law.laws import Exact, usual_blend
+from overreach.model.catalogue import description_of, load, parts_in
 from overreach.model.mujoco.chain import joint_of
 from overreach.model.mujoco.robot import Parts
+from overreach.requests import ArmRequest
+from overreach.robots.kinematic import KinematicRobot
 from overreach.testing.arm import check_arm
-from overreach.types import Channel
+from overreach.types import Channel, Command, Twist
+from overreach.verdicts import Verdict
 
 ROBOTS = [("mobile7", "follow"), ("mobile7", "fixed"), ("mobile4", "follow")]
 IDS = [f"{name} {mode}" for name, mode in ROBOTS]
@@ -295,7 +302,73 @@ def test_a_fixed_yaw_yields_smoothly(wanted: float, most: float) -> None:
     assert task.yielding(task.wanted(f, most), most)[0] == pytest.approx(f, abs=1e-7)
 
 
-@given(w=st.tuples(*[st.floats(-1.7, 1.7)] * 3))
-def test_rotation_vectors(w: tuple[float, float, float]) -> None:
-    """The logarithm undoes the exponential."""
-    assert vector(turned(np.array(w))) == pytest.approx(w, abs=1e-9)
+@pytest.mark.parametrize("robot", ["mobile7", "mobile7#fixed", "mobile4"])
+def test_a_hand_that_begins_turned_turns_back_in_its_place(robot: str) -> None:
+    """Whatever attitude it begins with, at a stick of 1 cm/s the hand never moves faster: it turns back slowly."""
+    model = load(robot)
+    n, random, dt = len(model.arm.channels), np.random.default_rng(4), 0.01
+    turned_back = 0
+    for number in range(24):
+        pilot, moves = Pilot(model, Exact(usual_blend(Exact().blend, model))), KinematicRobot(model)
+        q = np.array(moves.true.q)
+        joints = [n - 1 - number % 3] if number < 16 else range(n - 3, n)  # the wrist: one joint alone, or all
+        for k in joints:
+            q[k] += random.uniform(0.3, 1.6) * random.choice((-1.0, 1.0))
+        limits = [(one.lower + 0.03, one.upper - 0.03) for one in model.arm.channels]
+        moves._theta = tuple(float(min(high, max(low, one))) for one, (low, high) in zip(q, limits, strict=True))
+        pilot.ask(ArmRequest(1), 0.0)
+        places, state = [], moves.read(0.0)
+        begun = model.arm.at(state.q, model.mount)
+        for k in range(200):
+            now = k * dt
+            tick = pilot.tick(state, Command(1, k + 1, 1, True, Twist(v_x=0.01), seen=now), now, dt)
+            moves.write(tick.base, tick.joints, None, now, now + dt)
+            state = moves.read(now + dt)
+            x, y, z = model.arm.at(state.q, model.mount).hand
+            c, s = math.cos(state.theta_b), math.sin(state.theta_b)
+            places.append((state.x_b + c * x - s * y, state.y_b + s * x + c * y, z))
+            assert tick.verdict is not Verdict.FAULT
+        speeds = np.linalg.norm(np.diff(places, axis=0), axis=1) / dt
+        assert speeds.max() <= 0.01 * 1.01, (number, speeds.max(), speeds.argmax())
+        ended = model.arm.at(state.q, model.mount)
+        turned_back += off_by(model.arm, ended) < off_by(model.arm, begun) - 0.2
+    assert turned_back >= 12
+
+
+def off_by(arm: Arm, chain: Chain) -> float:
+    """Return how far [rad] a hand is from the attitude that it is to have where it is."""
+    assert isinstance(arm, SpatialArm)
+    assert isinstance(chain, SpatialChain)
+    return apart(turned_to(arm, chain.pose), chain.pose, np.empty(3))
+
+
+@given(axis=st.tuples(*[st.floats(-1.0, 1.0)] * 3), angle=st.floats(0.0, math.pi), turn=st.floats(-math.pi, math.pi))
+def test_rotation_vectors(axis: tuple[float, float, float], angle: float, turn: float) -> None:
+    """The logarithm undoes the exponential, up to half a turn, where either direction is one; scalar and batched."""
+    size = math.hypot(*axis)
+    if size < 1e-3:
+        return
+    w = np.array(axis) / size * angle
+    found = vector(turned(w))
+    assert np.abs(turned(found) - turned(w)).max() < 1e-7
+    assert np.abs(batched(turned(w)[None])[0] - found).max() < 1e-9
+    if angle < math.pi - 1e-3:
+        assert found == pytest.approx(w, abs=1e-9)
+    goal, is_ = turned(np.array((0.0, 0.0, turn))) @ turned(w), turned(np.array((0.0, 0.0, turn)))
+    between = np.empty(3)
+    assert apart(goal.ravel(), is_.ravel(), between) == pytest.approx(angle, abs=1e-7)
+    assert np.abs(turned(between) @ is_ - goal).max() < 1e-7
+
+
+def test_an_arm_folded_back_is_told_of() -> None:
+    """An arm that holds its pitch alone, folded over its shoulder: its yaw is half a turn off, and it says OFF."""
+    arm = parts("mobile4").arm
+    chain = arm.at((-2.292, 1.485, 1.694, -0.450), Mount())
+    assert off_by(arm, chain) > 1.5
+    for one in both(arm, 1000.0):
+        n = len(one.channels)
+        asked, out = np.zeros(layout.ASKED + n), np.empty(n + layout.DONE)
+        asked[layout.DT], asked[layout.COS], asked[layout.STEP : layout.STEP + 3], asked[0] = 0.01, 1.0, 0.02, 0.01
+        one.engine.step(np.array(chain.joints), chain.pose, chain.J, asked, out)
+        assert out[n + layout.WHY] == layout.OFF
+        assert out[n + layout.SCALE] < 1.0

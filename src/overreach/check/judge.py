@@ -98,9 +98,10 @@ def _turned_off(model: DescribedRobot, driven: Driven, R: Array, psi: Array) -> 
             delta = float((heading[k] - bearing[k] + np.pi) % (2.0 * np.pi) - np.pi)
             f, _ = task.yielding(delta, manner.yaw)
         yawed(R_home, psi[k] + f, goal)
-        apart(goal, R[k].ravel(), e)
+        angle = apart(goal, R[k].ravel(), e)
         task.rows(manner.held, psi[k], goal, approach, 1.0, T)
-        off[k] = np.linalg.norm(T[3:, 3:] @ e)
+        folded = manner.held == task.PITCH and angle > task.FOLDED
+        off[k] = angle if folded else np.linalg.norm(T[3:, 3:] @ e)
     return off
 
 

@@ -12,7 +12,7 @@ from msgspec.structs import astuple
 from overreach.arm.chain import NO_REST, Chain, Governing, Rest, governs
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
-from overreach.control.governed import Governor, slipped
+from overreach.control.governed import Governor, amid, slipped
 from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
@@ -204,7 +204,7 @@ class HandController:
         u = meant(self._angle, twist, l, psi + mount[2], state.pose.yaw, polar.theta_e)
         u_r, u_t = u.u_r, u.u_t
         is_ = state.motion
-        plan = checked(self._plan(chain, u, is_))
+        plan = checked(self._plan(chain, amid(u, 0.5 * self.guard.written[1] * dt) if self._governs else u, is_))
         split, own = plan.split, plan.joints
         if self._governs and own is None:
             self._shares = split.mu, split.sigma

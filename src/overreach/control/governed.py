@@ -25,6 +25,15 @@ def slipped(is_: Twist, asked: tuple[float, ...]) -> Twist:
     return Twist(is_.v_x - asked[0], is_.v_y, w_z=is_.w_z - asked[1])
 
 
+def amid(u: HandTwist, turn: float) -> HandTwist:
+    """Return `u` as a base sees it that has turned by `turn` [rad], half of what it will in a period.
+
+    A base that is asked for the twist of the period's beginning leaves the hand behind by its curvature, a little each
+    period: where it carries the hand alone, the hand would creep out of the workspace.
+    """
+    return msgspec.structs.replace(u, u_r=u.u_r + turn * u.u_t, u_t=u.u_t - turn * u.u_r)
+
+
 def within_height(u: HandTwist, z: float, space: Workspace, band: float) -> float:
     """Return u_z [m/s], tapered to 0 over the last `band` [m] before the height that the hand goes towards."""
     if u.u_z > 0.0:

@@ -27,7 +27,7 @@ MODE = "follow"
 """The mode in which a hand is held if none is asked for."""
 IN_MODE = "#"
 """Between a robot and the mode in which its hand is held, where both are one text."""
-RAMP = 5.0
+RAMP = 4.0
 """The command reaches full deflection in 1/RAMP s."""
 FASTEST = 0.3
 """A robot whose description does not say more is driven at most this fast [m/s]."""

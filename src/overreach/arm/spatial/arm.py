@@ -16,6 +16,7 @@ from overreach.arm.spatial.manner import Manner
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.settle import Posture
 from overreach.arm.spatial.task import wanted, yielding
+from overreach.arm.spatial.turning import apart
 from overreach.types import Channel
 from overreach.verdicts import Verdict
 
@@ -253,6 +254,6 @@ def turned(w: Array) -> Array:
 
 def vector(R: Array) -> Array:
     """Return the rotation vector [rad] of R: its logarithm."""
-    axis = np.array((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]))
-    sine = 0.5 * float(np.linalg.norm(axis))
-    return axis * (0.5 if sine < 1e-9 else 0.5 * math.atan2(sine, 0.5 * (float(np.trace(R)) - 1.0)) / sine)
+    w = np.empty(3)
+    apart(R.ravel(), np.eye(3).ravel(), w)
+    return w

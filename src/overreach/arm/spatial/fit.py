@@ -12,14 +12,19 @@ from overreach.arm.spatial.inverse import inverse, rates
 from overreach.arm.spatial.screws import Array
 
 SLACK = 1e-12
+MORE = 3.0
+"""Null rates may be so many times as great as they are wanted."""
 LOOSE = 1e-9
 """An excess [1/s] that counts as rounding, of rates that are to fit and of those that cannot be changed."""
 
 
 def null_share(a: Array, b: Array, c: Array, low: Array, high: Array) -> float:
-    """Return the greatest part, at most 1, of the null rates c with which a + b + part c fits, or -1 if none does."""
+    """Return the part of the null rates c, as near to 1 as can be, with which a + b + part c fits; -1 if none does.
+
+    Between 0 and MORE: the posture goes its way faster, too, where that keeps a joint off its bound.
+    """
     fits = True
-    least, most = 0.0, 1.0
+    least, most = 0.0, MORE
     for k in range(a.shape[0]):
         whole = a[k] + b[k]
         if whole + c[k] > high[k] + SLACK or whole + c[k] < low[k] - SLACK:
@@ -33,7 +38,7 @@ def null_share(a: Array, b: Array, c: Array, low: Array, high: Array) -> float:
             least = max(least, min(one, other))
     if fits:
         return 1.0
-    return most if most >= least else -1.0
+    return max(least, min(1.0, most)) if most >= least else -1.0
 
 
 def fit(
@@ -44,7 +49,7 @@ def fit(
 
     x: what may be scaled; x_c: what may not; null: wanted rates of which only what does not move the hand is used, at
     most `most_null` of each joint, and only as far as the rates stay within the soft bounds too, if they can. Where not
-    even s = 0 fits, each joint brakes as its own bounds allow, and s is -1. B (m, m): the inverse over all joints.
+    even s = 0 fits, every joint stops, and s is -1. B (m, m): the inverse over all joints.
     """
     m, n = A.shape
     y, of_joints = np.empty(m), np.empty((5, n))
@@ -122,7 +127,5 @@ def fit(
         free[worst] = 0.0
     if best < 0.0:
         for k in range(n):
-            out[k] = max(low[k], min(high[k], b[k]))
-            if free[k] == 0.0:
-                out[k] = held[k]
+            out[k] = max(low[k], min(high[k], 0.0))
     return best, sigma, limiting

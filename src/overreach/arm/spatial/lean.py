@@ -36,6 +36,7 @@ from overreach.arm.spatial.step import (
     NOT_WHOLE,
     NULL_GAIN,
     OFF,
+    ONE_TURNING,
     PLAN,
     R_HOME,
     S_X,
@@ -49,6 +50,7 @@ from overreach.arm.spatial.step import (
     STUCK,
     TOL_V,
     TOL_W,
+    TURN_BACK,
     W_C,
     WAS,
     D,
@@ -56,7 +58,7 @@ from overreach.arm.spatial.step import (
     half_turn,
     reach_for,
 )
-from overreach.arm.spatial.turning import yawed
+from overreach.arm.spatial.turning import STRAIGHT, apart, yawed
 
 Three = tuple[float, float, float]
 
@@ -101,19 +103,25 @@ class Lean:
             return [*v, ell * turning[0], ell * turning[1], ell * turning[2]]
         return [*v, *(T @ turning).tolist()]
 
-    def _apart(self, hand: Array, yaw: float) -> Three:
-        """Return the rotation vector from a hand to Rz(yaw) R_home; see `turning.apart`."""
+    def _apart(self, hand: Array, yaw: float) -> tuple[float, Three]:
+        """Return the angle and the rotation vector from a hand to Rz(yaw) R_home; see `turning.apart`."""
         (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = (self._R_home @ hand[:9].reshape(3, 3).T).tolist()
         c, s = math.cos(yaw), math.sin(yaw)
         x, y, z = m21 - s * m02 - c * m12, c * m02 - s * m12 - m20, s * m00 + c * m10 - c * m01 + s * m11
         sine = 0.5 * math.sqrt(x * x + y * y + z * z)
-        angle = math.atan2(sine, 0.5 * (c * m00 - s * m10 + s * m01 + c * m11 + m22 - 1.0))
+        trace = c * m00 - s * m10 + s * m01 + c * m11 + m22
+        if sine < STRAIGHT and trace < 0.0:
+            R, e = np.empty(9), np.empty(3)
+            yawed(self._R_home.ravel(), yaw, R)
+            angle = apart(R, hand, e)
+            return angle, (float(e[0]), float(e[1]), float(e[2]))
+        angle = math.atan2(sine, 0.5 * (trace - 1.0))
         factor = 0.5 if sine < 1e-9 else 0.5 * angle / sine
-        return factor * x, factor * y, factor * z
+        return angle, (factor * x, factor * y, factor * z)
 
     def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         """See `step.step`."""
-        n, m, setup, ell = self._n, self._m, self._setup, self._ell
+        n, m, setup = self._n, self._m, self._setup
         ask = asked.tolist()
         dt = ask[DT]
         x_h, y_h, z_h = hand[9:].tolist()
@@ -121,8 +129,8 @@ class Lean:
         c, s_ = x_h / l, y_h / l
         bearing = math.atan2(y_h, x_h)
         f, inside = task.yielding(ask[DELTA], setup[D]) if setup[D] > 0.0 else (0.0, 0.0)
-        e_x, e_y, e_z = self._apart(hand, bearing + f)
-        k_r = setup[K_R]
+        angle, (e_x, e_y, e_z) = self._apart(hand, bearing + f)
+        k_r = min(setup[K_R], TURN_BACK / max(angle, 1e-9))
         e = (e_x * k_r, e_y * k_r, e_z * k_r)
         T = self._task(bearing, bearing + f)
         A = self._rows(T, J)
@@ -141,6 +149,8 @@ class Lean:
         hand_1 = np.empty(12)
         for attempt in range(ATTEMPTS):
             part = 0.0 if attempt == ATTEMPTS - 1 else 0.5**attempt
+            if attempt == 1:
+                e = (0.0, 0.0, 0.0)
             u_x, u_y, u_z = [part * one for one in ask[U : U + 3]]
             w_c = part * ask[W_C]
             plan = [part * one for one in ask[PLAN : PLAN + 3]]
@@ -148,16 +158,21 @@ class Lean:
             real = _plus(_moved(ask, *base), slip)
             rate = inside * w_c + (1.0 - inside) * (c * u_y - s_ * u_x) / l
             x = self._asks(T, (u_x, u_y, u_z), (0.0, 0.0, rate))
-            scale, joint, dq = fit.fit(x, left_by(*real, e))
+            x_c = left_by(*real, e)
+            scale, joint, dq = fit.fit(x, x_c)
+            part_of_x, x_s = scale, x
             if scale < 1.0:
-                x_b = list(map(add, x, left_by(*_moved(ask, *plan), (0.0, 0.0, 0.0))))
-                scale, joint, dq = fit.fit(x_b, left_by(*slip, e))
-                s_base = max(scale, 0.0)
+                x_s = list(map(add, x, left_by(*_moved(ask, *plan), (0.0, 0.0, 0.0))))
+                x_c = left_by(*slip, e)
+                scale, joint, dq = fit.fit(x_s, x_c)
+                s_base, part_of_x = max(scale, 0.0), scale
                 wanted = [s_base * one for one in plan]
                 base = [reach_for(*one) for one in zip(wanted, was_base, step_base, strict=True)]
                 real = _plus(_moved(ask, *base), slip)
                 if base != wanted:
-                    again, other, dq = fit.fit([s_base * one for one in x], left_by(*real, e))
+                    x_s, x_c = [s_base * one for one in x], left_by(*real, e)
+                    again, other, dq = fit.fit(x_s, x_c)
+                    part_of_x = again
                     if again < 1.0:
                         joint = other
                         scale = s_base * again if again >= 0.0 else -1.0
@@ -170,6 +185,10 @@ class Lean:
             for one, before, most in zip(dq, rates, change, strict=True):
                 if abs(one - before) > most * (1.0 + SLIGHTLY):
                     fraction = min(fraction, most / abs(one - before))
+            if fraction < 1.0 and attempt < ATTEMPTS - 1:
+                wanted_v = [part_of_x * one + more for one, more in zip(x_s[:3], x_c[:3], strict=True)]
+                if part_of_x < 0.0 or math.dist((A[:3] @ dq).tolist(), wanted_v) > setup[TOL_V]:
+                    continue  # part of the way to rates that do not move the hand as they should leads anywhere
             if fraction < 1.0:
                 why = CHANGING
                 dq = [before + fraction * (one - before) for one, before in zip(dq, rates, strict=True)]
@@ -187,7 +206,7 @@ class Lean:
             self._pose(q + np.array(dq) * dt, hand_1)
             missing, size = self._missing(T_1, place, yaw_1, hand_1)
             if why != CHANGING:
-                if size > SMALL_TURN * ell:
+                if size > SMALL_TURN:
                     missing[3:] = [0.0] * (m - 3)
                 free = [a + AT_BOUND < one < b - AT_BOUND for one, a, b in zip(dq, low, high, strict=True)]
                 more = fit.more(missing, free if m <= sum(free) < n else None)
@@ -195,7 +214,7 @@ class Lean:
                 self._pose(q + np.array(dq) * dt, hand_1)
                 missing, size = self._missing(T_1, place, yaw_1, hand_1)
             off_v = math.sqrt(missing[0] ** 2 + missing[1] ** 2 + missing[2] ** 2) / dt
-            off_w = size / ell
+            off_w = size
             scale *= part
             if why == CHANGING:
                 scale *= fraction
@@ -212,8 +231,10 @@ class Lean:
     def _missing(self, T: Array | None, place: Three, yaw: float, hand: Array) -> tuple[Floats, float]:
         """See `step.missing`, for the attitude Rz(yaw) R_home."""
         x, y, z = hand[9:].tolist()
-        missing = self._asks(T, (place[0] - x, place[1] - y, place[2] - z), self._apart(hand, yaw))
-        return missing, math.hypot(*missing[3:])
+        angle, e = self._apart(hand, yaw)
+        missing = self._asks(T, (place[0] - x, place[1] - y, place[2] - z), e)
+        folded = self._m == ONE_TURNING and angle > task.FOLDED
+        return missing, angle if folded else math.hypot(*missing[3:]) / self._ell
 
 
 def _joint(limits: Floats, margin: float, gain: float) -> tuple[float, ...]:

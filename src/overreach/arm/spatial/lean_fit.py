@@ -8,7 +8,7 @@ from typing import Any, final
 
 import numpy as np
 
-from overreach.arm.spatial.fit import LOOSE, SLACK
+from overreach.arm.spatial.fit import LOOSE, MORE, SLACK
 from overreach.arm.spatial.inverse import SLIGHT, damping, damping_beside
 from overreach.arm.spatial.screws import Array
 
@@ -103,7 +103,7 @@ class Fit:
             held[worst] = high[worst] if whole > high[worst] else low[worst]
             free[worst] = 0.0
         if best < 0.0:
-            out = np.where(free == 0.0, held, np.maximum(low, np.minimum(high, b)))
+            out = np.maximum(low, np.minimum(high, 0.0))
         return best, limiting, out.tolist()
 
 
@@ -114,7 +114,7 @@ def _null_share(whole: Floats, c: Floats, low: Floats, high: Floats) -> float:
             break
     else:
         return 1.0
-    least, most = 0.0, 1.0
+    least, most = 0.0, MORE
     for now, slope, below, above in zip(whole, c, low, high, strict=True):
         if abs(slope) < LOOSE:
             if now > above + LOOSE or now < below - LOOSE:
@@ -122,7 +122,7 @@ def _null_share(whole: Floats, c: Floats, low: Floats, high: Floats) -> float:
         else:
             one, other = (above - now) / slope, (below - now) / slope
             most, least = min(most, max(one, other)), max(least, min(one, other))
-    return most if most >= least else -1.0
+    return max(least, min(1.0, most)) if most >= least else -1.0
 
 
 def _inverse(G: Array, eps: float) -> tuple[Array, float]:

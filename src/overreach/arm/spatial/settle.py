@@ -18,6 +18,7 @@ from overreach.arm.spatial.inverse import DAMPED
 from overreach.arm.spatial.manner import Manner
 from overreach.arm.spatial.room import ENDLESS, HOME, LOWER, NEAR_HOME, OFF_LIMITS, UPPER, WEIGHT
 from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.turning import STRAIGHT, apart
 
 GAIN = 0.25
 LONGEST = 0.15
@@ -210,8 +211,12 @@ def _vector(M: Array) -> Array:
     """Return the rotation vectors (B, 3) [rad] of M (B, 3, 3)."""
     axis = np.stack((M[:, 2, 1] - M[:, 1, 2], M[:, 0, 2] - M[:, 2, 0], M[:, 1, 0] - M[:, 0, 1]), axis=1)
     sine = 0.5 * np.linalg.norm(axis, axis=1)
-    angle = np.arctan2(sine, 0.5 * (np.trace(M, axis1=1, axis2=2) - 1.0))
-    return np.asarray(axis * np.where(sine < 1e-9, 0.5, 0.5 * angle / np.maximum(sine, 1e-9))[:, None])
+    trace = np.trace(M, axis1=1, axis2=2)
+    angle = np.arctan2(sine, 0.5 * (trace - 1.0))
+    found = np.asarray(axis * np.where(sine < 1e-9, 0.5, 0.5 * angle / np.maximum(sine, 1e-9))[:, None])
+    for k in np.flatnonzero((sine < STRAIGHT) & (trace < 0.0)):
+        apart(M[k].ravel(), np.eye(3).ravel(), found[k])
+    return found
 
 
 def _inverses(G: Array, eps: float) -> tuple[Array, Array]:

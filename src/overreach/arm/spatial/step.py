@@ -1,6 +1,6 @@
 """One period of an arm in space on a base that takes its part: rates, what they achieve, and what limits them.
 
-Scalar: to be compiled. Its twin with numpy is `step_numpy`; both follow one specification, to 1e-9:
+Scalar: to be compiled. Its twin with numpy is `lean.Lean`; both follow one specification, to 1e-9:
 
     f         the hand's yaw past its bearing that is wanted; R = Rz(bearing + f) R_home is the reference attitude
     base      what really happens: the plan, held to what its acceleration allows, and its slip
@@ -8,8 +8,8 @@ Scalar: to be compiled. Its twin with numpy is `step_numpy`; both follow one spe
     rates     `fit`; where s < 1, the base is scaled as well and the arm solved again
     q_1       q + rates dt; the base moves on its exact arc; the pose still missing there is made up for by the same
               inverse, or by one over the joints that are not at a bound (a chord-Newton step)
-    verdict   of the forward kinematics at the end: where the hand is not where s u takes it, smaller s are tried, and
-              at last the arm only holds its attitude
+    verdict   of the forward kinematics at the end: where the hand is not where s u takes it, smaller s are tried,
+              and the attitude is left as it is
 
 A step is exact in the hand's place, at the end of its period, whatever the joints' curvature.
 """
@@ -24,7 +24,7 @@ from overreach.arm.spatial.fit import fit
 from overreach.arm.spatial.inverse import damping_beside, inverse_beside, rates
 from overreach.arm.spatial.room import CHANGE, NULL_SPEED, SPEED, WEIGHT, bounds, downhill
 from overreach.arm.spatial.screws import Array, forward
-from overreach.arm.spatial.task import count, product, rows, yielding
+from overreach.arm.spatial.task import FOLDED, count, product, rows, yielding
 from overreach.arm.spatial.turning import apart, yawed
 
 HELD, ELL, EPS, NULL_GAIN, K_R, MARGIN, D, TOL_V, TOL_W = range(9)
@@ -47,6 +47,8 @@ limits (-1: none), why, error at the period's end [m/s], of the attitude [rad], 
 FINE, AT_LIMIT, AT_SPEED, CHANGING, STUCK, OFF = range(6)
 """Why a command is scaled: a joint's limit, a joint's speed, its acceleration, nothing fits, the hand would be off."""
 
+TURN_BACK = 0.3
+"""An error of the attitude fades at most so fast [rad/s]: a hand that begins far from it turns slowly, in its place."""
 SMALL_TURN = 2e-3
 """An attitude's error [rad] up to which it is made up for within one period; a greater one fades at K_R."""
 AT_BOUND = 1e-9
@@ -54,6 +56,8 @@ SLIGHTLY = 1e-9
 """A change of rates beyond its limit by this part is rounding, and cut off."""
 NOT_WHOLE = 0.999
 """The scale that is told where the hand's place is kept and its attitude is not."""
+ONE_TURNING = 4
+"""Rows of a task of the place and one turning."""
 ATTEMPTS = 4
 """Scales that are tried where a step misses: s, s/2, s/4, 0."""
 
@@ -106,9 +110,9 @@ def goal(hand: Array, u: Array, scale: float, base: Array, dt: float, out: Array
     out[0], out[1], out[2] = c * x + s * y, c * y - s * x, hand[11] + scale * u[2] * dt
 
 
-def missing(T: Array, place: Array, R: Array, hand: Array, e: Array, out: Array) -> float:
-    """Write the task from a hand to a place and an attitude into `out`; return the length of its turning part."""
-    apart(R, hand, e)
+def missing(T: Array, ell: float, place: Array, R: Array, hand: Array, e: Array, out: Array) -> float:
+    """Write the task from a hand to a place and an attitude into `out`; return the length of its turning part [rad]."""
+    angle = apart(R, hand, e)
     size = 0.0
     for i in range(T.shape[0]):
         if i < 3:
@@ -116,7 +120,18 @@ def missing(T: Array, place: Array, R: Array, hand: Array, e: Array, out: Array)
         else:
             out[i] = T[i, 3] * e[0] + T[i, 4] * e[1] + T[i, 5] * e[2]
             size += out[i] * out[i]
-    return math.sqrt(size)
+    return angle if T.shape[0] == ONE_TURNING and angle > FOLDED else math.sqrt(size) / ell
+
+
+def short_of(A: Array, dq: Array, part: float, x: Array, x_c: Array) -> float:
+    """Return by how much [m/s] rates miss the hand's velocity in `part` x + x_c."""
+    square = 0.0
+    for i in range(3):
+        off = part * x[i] + x_c[i]
+        for k in range(A.shape[1]):
+            off -= A[i, k] * dq[k]
+        square += off * off
+    return math.sqrt(square)
 
 
 def half_turn(angle: float) -> float:
@@ -161,13 +176,13 @@ def step(
     if setup[D] > 0.0:
         f, inside = yielding(asked[DELTA], setup[D])
     yawed(R_home, bearing + f, R)
-    apart(R, hand, e)
+    k_r = min(setup[K_R], TURN_BACK / max(apart(R, hand, e), 1e-9))
     rows(held, bearing, R, approach, ell, T)
     product(T, J, A)
     for k in range(n):
         w[k], most_null[k] = limits[k, WEIGHT], NULL_SPEED * limits[k, SPEED]
     for i in range(3):
-        e[i] *= setup[K_R]
+        e[i] *= k_r
     bounds(limits, q, dt, setup[MARGIN], low, high)
     for k in range(n):  # the posture is not to be drawn home faster than joints can change their rates
         soft_low[k] = max(low[k], was[k] - limits[k, CHANGE] * dt)
@@ -177,6 +192,8 @@ def step(
     s, sigma, joint, why, off_v, off_w = 0.0, 0.0, -1, FINE, 0.0, 0.0
     for attempt in range(ATTEMPTS):
         part = 0.0 if attempt == ATTEMPTS - 1 else 0.5**attempt
+        if attempt == 1:
+            e[:] = 0.0
         w_c = part * asked[W_C]
         for i in range(3):
             u[i], plan[i] = part * asked[U + i], part * asked[PLAN + i]
@@ -187,6 +204,7 @@ def step(
         task_of(T, u[0], u[1], u[2], inside * w_c + (1.0 - inside) * bearing_rate, x)
         left_by(T, real, hand, polar, inside, e, x_c)
         s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
+        part_of_x = s
         if s < 1.0:
             # The whole command is scaled, base included: what the base carries then scales with it.
             moved_with(asked, plan, real)
@@ -195,7 +213,7 @@ def step(
                 x[i] += x_c[i]
             left_by(T, slip, hand, polar, inside, e, x_c)
             s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
-            s_base = max(s, 0.0)
+            s_base, part_of_x = max(s, 0.0), s
             kept = True
             for i in range(3):
                 base[i] = reach_for(s_base * plan[i], asked[WAS + i], asked[STEP + i])
@@ -208,6 +226,7 @@ def step(
                 )  # fmt: skip
                 left_by(T, real, hand, polar, inside, e, x_c)
                 again, sigma, other = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
+                part_of_x = again
                 if again < 1.0:
                     joint = other
                     s = s_base * again if again >= 0.0 else -1.0
@@ -221,6 +240,9 @@ def step(
             change = abs(dq[k] - was[k])
             if change > limits[k, CHANGE] * dt * (1.0 + SLIGHTLY):
                 fraction = min(fraction, limits[k, CHANGE] * dt / change)
+        astray = part_of_x < 0.0 or (fraction < 1.0 and short_of(A, dq, part_of_x, x, x_c) > setup[TOL_V])
+        if fraction < 1.0 and astray and attempt < ATTEMPTS - 1:
+            continue  # part of the way to rates that do not move the hand as they should leads anywhere
         if fraction < 1.0:  # all channels go the same part of their way
             why = CHANGING
             for k in range(n):
@@ -241,9 +263,9 @@ def step(
         for k in range(n):
             q_1[k] = q[k] + dq[k] * dt
         forward(screws, tip, q_1, hand_1, J_1, places)
-        size = missing(T_1, place, R, hand_1, off, x)
+        size = missing(T_1, ell, place, R, hand_1, off, x)
         if why != CHANGING:
-            if size > SMALL_TURN * ell:
+            if size > SMALL_TURN:
                 for i in range(3, m):
                     x[i] = 0.0
             many = 0
@@ -260,9 +282,9 @@ def step(
                 dq[k] = reach_for(dq[k], was[k], limits[k, CHANGE] * dt)
                 q_1[k] = q[k] + dq[k] * dt
             forward(screws, tip, q_1, hand_1, J_1, places)
-            size = missing(T_1, place, R, hand_1, off, x)
+            size = missing(T_1, ell, place, R, hand_1, off, x)
         off_v = math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / dt
-        off_w = size / ell
+        off_w = size
         s *= part
         if why == CHANGING:
             s *= fraction

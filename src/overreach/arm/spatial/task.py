@@ -13,6 +13,9 @@ from overreach.arm.spatial.screws import Array
 PITCH, SPIN, THIRD = 1, 2, 4
 WHOLE = PITCH | SPIN | THIRD
 """All three: the base's own axes are taken instead, which span the same."""
+FOLDED = 1.5
+"""Where the pitch is all that is held, the yaw is the bearing's: an attitude farther off [rad] is that of an arm folded
+back over its shoulder, in which no pitch can be told."""
 YIELDS = 0.8
 """A fixed yaw yields from this part of its greatest deviation D from the bearing, to D at 2 - YIELDS of it ..."""
 BEHIND = 0.6

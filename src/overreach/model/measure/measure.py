@@ -26,6 +26,8 @@ BEARINGS = 1.05
 """The sector ends at this bearing [rad] from the arm's x axis at the latest, either way."""
 AHEAD = 0.15
 """The hand is so far [parts of R] ahead of the turning centre of a base that cannot move sideways."""
+LONG = 0.245
+"""A sector is preferred that is so long in l, in parts of R: a reach of 0.11 R then fits between its two bands."""
 ROOM = 0.3
 """Room [rad] in bearing that a sector should have to either side of straight ahead."""
 FIXED = 0.5
@@ -121,7 +123,8 @@ def measure(
                 f"{ahead[walked.home[:2]]:.2f} m ahead of the turning centre; choose one in front of it"
             )
         raise WorkspaceError("around home the posture jumps to another branch: choose another home")
-    box = largest(ok, walked.l, walked.psi, walked.z, walked.home)
+    cells = ok, walked.l, walked.psi, walked.z, walked.home
+    box = largest(*cells, LONG * R) or largest(*cells)
     if box is None:
         raise WorkspaceError("around home there is no sector that is two cells wide: choose another home")
     l, psi, z = [(float(axis[a]), float(axis[b])) for axis, (a, b) in zip(walked[:3], box[:3], strict=True)]

@@ -23,7 +23,7 @@ UP = 22
 """Cells above and below home that are tried."""
 OFF = 0.0022
 """How far off its task a hand may be, in parts of R."""
-JUMP = 0.6
+JUMP = 0.45
 """A joint's change [rad, m] between neighbours beyond which they are on different branches ..."""
 JUMP_YAW = 1.4
 """... and from one yaw to the next."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import final
 
 import mujoco
@@ -18,9 +19,10 @@ POSTURES = 40
 
 @final
 class Contacts:
-    """Which bodies of a robot come closer than `distance` [m], beside those that do at home."""
+    """Which bodies of a robot come closer than `distance` [m]; those that are so at home may, as long as none touch."""
 
     def __init__(self, model: mujoco.MjModel, description: Description, distance: float) -> None:
+        model = copy(model)  # the margins are ours alone
         self._model, self._data = model, mujoco.MjData(model)
         lock(model, self._data, description)
         groups = description.arm.groups
@@ -32,8 +34,8 @@ class Contacts:
         self._neighbours = self._often()
         self.at_home = self._pairs(np.array(description.home)) - self._neighbours
         """Bodies that touch at home, and should not."""
-        model.geom_margin[:] = distance
-        self._usual = self._pairs(np.array(description.home))
+        model.geom_margin[:] = 0.5 * distance  # of both of a pair together
+        self._usual = self._pairs(np.array(description.home)) | self._neighbours
 
     def _after_the_first_hinge(self, groups: tuple[tuple[str, ...], ...]) -> Array:
         """Say of each body whether it moves with the arm: what only the lift carries may be close to the rest."""
@@ -59,10 +61,15 @@ class Contacts:
         self.put(q)
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
+        return self._found(np.inf)
+
+    def _found(self, below: float) -> set[tuple[int, int]]:
+        """Return the pairs of bodies, of which the arm moves one, that MuJoCo has found closer than `below` [m]."""
         if not self._data.ncon:
             return set()
         found = set()
-        for one, other in self._model.geom_bodyid[self._data.contact.geom].tolist():
+        contact = self._data.contact
+        for one, other in self._model.geom_bodyid[contact.geom[contact.dist < below]].tolist():
             if self._moving[one] or self._moving[other]:
                 found.add((min(one, other), max(one, other)))
         return found
@@ -77,8 +84,9 @@ class Contacts:
         return {pair for pair, count in counts.items() if count >= ALWAYS * POSTURES}
 
     def touching(self, q: Array) -> set[tuple[int, int]]:
-        """Return the pairs of bodies that are closer than the distance at joints `q`, and are not so at home."""
-        return self._pairs(q) - self._usual
+        """Return the pairs of bodies that at joints `q` touch, or are closer than the distance and not so at home."""
+        close = self._pairs(q) - self._usual
+        return close | (self._found(0.0) - self._neighbours)
 
     def names(self, pairs: set[tuple[int, int]]) -> str:
         """Return pairs of bodies in words."""
