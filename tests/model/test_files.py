@@ -11,7 +11,7 @@ import pytest
 
 from overreach.errors import SetupError
 from overreach.model.description import read_description
-from overreach.model.mujoco.describe import describe
+from overreach.model.mujoco.describe import describe, run_describe
 from overreach.model.mujoco.robot import parts_of
 from overreach.model.mujoco.source import compiled, spec_from_file
 
@@ -91,6 +91,16 @@ def test_repairs_are_told(tmp_path: Path) -> None:
     assert sum("inertia" in line for line in source.warnings) == 5
     assert sum("collision meshes" in line for line in source.warnings) == 1
     assert compiled(source.spec, "it").njnt == 7
+
+
+def test_a_description_names_its_model_from_where_it_lies(tmp_path: Path) -> None:
+    """Written to another folder, a description names the model by the way from there, and is read from there."""
+    model, out = written(tmp_path, urdf()), tmp_path / "mine" / "robot.toml"
+    out.parent.mkdir()
+    run_describe(model, out)
+    description = read_description(out.read_text())
+    assert description.model == f"../{model.name}"
+    assert parts_of(description, out.parent).arm.channels
 
 
 def test_packages_are_looked_for_in_the_folders_above(tmp_path: Path) -> None:
@@ -177,6 +187,9 @@ def test_a_model_in_millimetres_looks_wrong(tmp_path: Path) -> None:
         ('body = "base_link"|body = "nothing"', "base.body: the model has no body 'nothing'"),
         ('kind = "differential"|kind = "legs"', "base.kind"),
         ("[hand]|[hnad]", "unknown"),
+        ('joints = ["arm_1", "arm_2", |joints = ["arm_2", "arm_1", ', "from the base outward: arm_1, arm_2"),
+        ('joints = ["arm_1", |joints = ["arm_2", ', "each once, from the base outward"),
+        ('joints = ["arm_1", |joints = ["left_wheel_joint", ', "'left_wheel_joint' does not carry the hand"),
         ("approach = [1, 0, 0]|approach = [0, 0, 0]", "must be an axis"),
     ],
 )

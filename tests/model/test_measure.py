@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import math
+import tomllib
 from pathlib import Path
 
 import msgspec
+import mujoco
 import numpy as np
 import pytest
 
@@ -16,9 +19,11 @@ from overreach.model.cache import keep, kept
 from overreach.model.catalogue import described, description_of, measured, parts_in, robot_of, workspace_of
 from overreach.model.description import MODES, read_description
 from overreach.model.measure.box import largest
+from overreach.model.measure.command import run_workspace
 from overreach.model.measure.measure import Result
 from overreach.model.measure.rank import holds, sentence
 from overreach.model.measure.text import drawing, table, with_table
+from overreach.model.mujoco.contact import Contacts
 from overreach.model.mujoco.robot import Parts, parts_of
 
 OURS = ("mobile7", "mobile4")
@@ -166,6 +171,62 @@ def test_the_table_is_the_description_s() -> None:
     assert read.workspace == {**found.description.workspace, "follow": other}
     assert msgspec.structs.replace(read, workspace={}) == msgspec.structs.replace(found.description, workspace={})
     assert table(shipped, "follow") in with_table(changed, shipped, "follow")
+
+
+def test_a_table_is_replaced_however_it_was_written() -> None:
+    """With a remark behind its name, or spaces in it; what stands behind it stays, remarks as well."""
+    found = parts("mobile4").description.workspace["follow"]
+    text = "[ workspace.follow ]  # by hand\nl = [0.1, 0.2]\n# not ours\n\n# of the hand\n[hand]\nbody = 'x'\n"
+    assert with_table(text, found, "follow") == (
+        f"# not ours\n\n# of the hand\n[hand]\nbody = 'x'\n\n{table(found, 'follow')}"
+    )
+    with pytest.raises(SetupError, match=r"\[workspace.follow\] cannot be put"):
+        with_table("workspace = 3\n", found, "follow")
+
+
+def test_what_touches_is_as_near_as_is_said() -> None:
+    """Bodies that are said to be too close are so, by MuJoCo's distance of their geoms; the model stays as it was."""
+    found = parts("mobile7")
+    distance = 0.05
+    margins = found.model.geom_margin.copy()
+    contacts = Contacts(found.model, found.description, distance)
+    assert (found.model.geom_margin == margins).all()
+    random, told = np.random.default_rng(5), 0
+    data = mujoco.MjData(found.model)
+    lower, upper = found.arm.limits[:, 0], found.arm.limits[:, 1]
+    for q in random.uniform(np.maximum(lower, -2.0), np.minimum(upper, 2.0), (60, len(lower))):
+        for channel, at in zip(found.arm.channels, q, strict=True):
+            data.joint(channel.moves).qpos[0] = at
+        mujoco.mj_kinematics(found.model, data)
+        for pair in contacts.touching(q):
+            geoms = [np.flatnonzero(found.model.geom_bodyid == body) for body in pair]
+            apart = min(mujoco.mj_geomDistance(found.model, data, a, b, 1.0, None) for a in geoms[0] for b in geoms[1])
+            assert apart <= distance + 1e-6
+            told += 1
+    assert told > 10
+
+
+def test_what_is_close_at_home_must_not_touch() -> None:
+    """A pair that is within the distance at home may be so elsewhere, but is told of where they are in each other."""
+    found = parts("mobile7")
+    contacts = Contacts(found.model, found.description, 1.0)  # all are that close at home
+    lower, upper = found.arm.limits[:, 0], found.arm.limits[:, 1]
+    random = np.random.default_rng(6)
+    assert not contacts.touching(np.array(found.arm.home))
+    seen = [contacts.touching(q) for q in random.uniform(lower, upper, (200, len(lower)))]
+    assert any(seen)
+    assert not all(seen)
+
+
+def test_a_home_that_was_found_has_its_own_hash(capsys: pytest.CaptureFixture[str]) -> None:
+    """The table that is printed for a home that was looked for is that of the description with this home in it."""
+    run_workspace("mobile4", "follow", find_home=True, out=None, figure=None)
+    said = capsys.readouterr().out
+    home = tuple(json.loads(said.rsplit("\nhome = ", 1)[1].split("\n")[0]))
+    printed = tomllib.loads(said[said.index("[workspace.follow]") :])["workspace"]["follow"]
+    there = parts("mobile4", home=home)
+    assert printed["model"] == there.key
+    assert printed["l"] == list(measured(there).measured.l)
 
 
 def test_the_drawing_has_the_sector() -> None:

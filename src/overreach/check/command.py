@@ -13,6 +13,7 @@ from tqdm import tqdm
 from overreach.check.check import Found, check
 from overreach.check.found import facts
 from overreach.check.streams import KINDS
+from overreach.errors import SetupError
 from overreach.files import write_text
 from overreach.plugs import in_mode
 
@@ -40,6 +41,9 @@ LINES: tuple[tuple[str, str, str], ...] = (
 
 def run_check(robot: str, mode: str, streams: int, seed: int, out: Path | None, jobs: int) -> None:
     """Print what was found and what the streams came to, and write it where that is asked for. Raises SetupError."""
+    for value, least, option in ((streams, 1, "--streams"), (jobs, 0, "--jobs"), (seed, 0, "--seed")):
+        if value < least:
+            raise SetupError(f"{option} must be at least {least}, got {value}")
     which = in_mode(robot, mode)
     said = facts(which)
     print("\n".join(said))

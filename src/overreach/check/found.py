@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import mujoco
 import numpy as np
@@ -27,8 +28,7 @@ SLOW, FAST = 0.05, 10.0
 def facts(which: str) -> list[str]:
     """Return lines on what was found of a robot, and what looks wrong. Raises SetupError."""
     parts = parts_for(which)
-    model = load(which)
-    assert isinstance(model, DescribedRobot)
+    model = cast(DescribedRobot, load(which))
     arm, space = model.arm, model.workspace
     up = float((arm.R_home @ np.array(arm.manner.approach))[2])
     joints = ", ".join(channel.moves for channel in arm.channels)

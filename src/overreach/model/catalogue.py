@@ -6,6 +6,7 @@ import importlib.resources
 import sys
 from collections.abc import Callable
 from functools import cache
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import msgspec
@@ -31,6 +32,8 @@ RAMP = 4.0
 """The command reaches full deflection in 1/RAMP s."""
 FASTEST = 0.3
 """A robot whose description does not say more is driven at most this fast [m/s]."""
+PLANAR = "overreach.models"
+"""Entry points of robots that are made by code, not described."""
 MODEL_FILES = (".xml", ".mjcf", ".urdf")
 
 
@@ -53,6 +56,11 @@ def description_of(which: str) -> tuple[Description, Path]:
     """
     if not is_file(which):
         texts = described()
+        if which not in texts and entry_points(group=PLANAR, name=which):
+            raise SetupError(
+                f"{which!r} moves in the plane and has no model file: this is for robots in space, such as "
+                f"{', '.join(texts)}"
+            )
         if which not in texts:
             raise UnknownNameError("robot", which, texts)
         return read_description(texts[which], f"robot {which!r}"), Path()

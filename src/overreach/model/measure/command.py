@@ -5,30 +5,36 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from tqdm import tqdm
 
-from overreach.errors import WorkspaceError
+from overreach.errors import SetupError, WorkspaceError
 from overreach.files import write_text
-from overreach.model.catalogue import measured, parts_for
+from overreach.model.catalogue import description_of, measured, parted, parts_for, parts_in
 from overreach.model.measure.figure import draw
 from overreach.model.measure.homes import find_homes, with_home
 from overreach.model.measure.text import drawing, table, with_table
 from overreach.model.mujoco.robot import Parts
 
 SHOWN = 5
+FIGURES = (".svg", ".png", ".pdf")
+"""Kinds of files that are drawn."""
 
 
 def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figure: Path | None) -> None:
     """Measure, draw, print and, where it is asked for, write; raises SetupError with nothing written."""
+    if figure is not None and figure.suffix.lower() not in FIGURES:
+        raise SetupError(f"--figure draws {', '.join(FIGURES)}, got {str(figure)!r}")
+    if find_home and out is not None:
+        raise SetupError("--find-home shows homes: put the one that you choose into the description, then use --out")
     parts = parts_for(robot, mode)
-    description = parts.description
     for warning in parts.warnings:
         print(f"warning: {warning}")
     if find_home:
-        parts = _with_best_home(parts)
+        parts = _with_best_home(parts, description_of(parted(robot)[0])[1], mode)
     with tqdm(desc="cells tried", unit="", dynamic_ncols=True) as bar:
         result = measured(parts, progress=lambda more: _count(bar, more))
-    base, found = description.base, result.measured
+    description, found = parts.description, result.measured
     print(f"{description.name}, {mode}: {result.does}\n")
     print(drawing(result))
     print()
@@ -38,18 +44,18 @@ def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figu
     if find_home:
         print(f"home = {list(parts.description.home)}\n")
     print(table(found, mode), end="")
-    if figure is not None:
-        draw(result, parts.mount, base.footprint, f"{description.name}, {mode}: {result.does}", figure)
     if out is not None:
         before = out.read_text("utf-8") if out.exists() else ""
         write_text(out, with_table(before, found, mode))
+    if figure is not None:
+        draw(result, parts.mount, description.base.footprint, f"{description.name}, {mode}: {result.does}", figure)
 
 
 def _count(bar: Any, more: int) -> None:
     bar.update(more)
 
 
-def _with_best_home(parts: Parts) -> Parts:
+def _with_best_home(parts: Parts, folder: Path, mode: str) -> Parts:
     with tqdm(desc="branches measured", unit="", dynamic_ncols=True) as bar:
 
         def progress(k: int, many: int) -> None:
@@ -64,4 +70,4 @@ def _with_best_home(parts: Parts) -> Parts:
     for home in homes[:SHOWN]:
         print(f"home = {list(home.q)}   # {home.volume:.4f} m^3, coarsely")
     print()
-    return with_home(parts, homes[0].q)
+    return parts_in(msgspec.structs.replace(parts.description, home=homes[0].q), folder, mode)

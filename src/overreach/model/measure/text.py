@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from typing import Any
 
 import numpy as np
 
 from overreach.arm.spatial.screws import Array
+from overreach.errors import SetupError
 from overreach.model.description import Measured
 from overreach.model.measure.measure import Result
 
@@ -31,15 +34,33 @@ def table(measured: Measured, mode: str) -> str:
 
 
 def with_table(text: str, measured: Measured, mode: str) -> str:
-    """Return the TOML `text` of a description with this table in it, in place of the one it had."""
-    kept, skipping = [], False
+    """Return the TOML `text` of a description with this table in it, in place of the one it had.
+
+    Raises SetupError for a text in which the table cannot be put.
+    """
+    kept: list[str] = []
+    own: list[str] | None = None
     for line in text.splitlines():
-        if line.startswith("["):
-            skipping = line.strip() == f"[workspace.{mode}]"
-        if not skipping:
-            kept.append(line)
+        if line.lstrip().startswith("["):
+            kept += _behind(own or [])
+            own = [] if re.match(rf"\s*\[\s*workspace\s*\.\s*[\"']?{mode}[\"']?\s*\]", line) else None
+        (kept if own is None else own).append(line)
+    kept += _behind(own or [])
     body = "\n".join(kept).rstrip()
-    return f"{body}\n\n{table(measured, mode)}" if body else table(measured, mode)
+    whole = f"{body}\n\n{table(measured, mode)}" if body else table(measured, mode)
+    try:
+        tomllib.loads(whole)
+    except tomllib.TOMLDecodeError as error:
+        raise SetupError(f"[workspace.{mode}] cannot be put into this description: {error}") from None
+    return whole
+
+
+def _behind(lines: list[str]) -> list[str]:
+    """Return the comments and empty lines at the end of a table: they belong to what follows it."""
+    end = len(lines)
+    while end > 0 and (not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#")):
+        end -= 1
+    return lines[end:]
 
 
 def drawing(result: Result) -> str:

@@ -112,7 +112,7 @@ def walk(
     walked = Walked(l, psi, z, ok, why, q, least, home)
     if posture.manner.yaw > 0.0:
         _turn(walked, posture, sigma, touching, progress)
-    _branches(walked)
+    _branches(walked, JUMP * coarse)
     return walked
 
 
@@ -167,8 +167,8 @@ def _turn(
             cells, q = cells[good], found.q[good]
 
 
-def _branches(walked: Walked) -> None:
-    """Drop the cells of which a joint jumps to an accepted neighbour."""
+def _branches(walked: Walked, jump: float) -> None:
+    """Drop the cells of which a joint jumps by `jump` [rad, m] to an accepted neighbour."""
     q = np.where(walked.ok[..., None], walked.q, np.nan)
     jumps = np.zeros(walked.ok.shape)
     for axis in range(3):
@@ -177,4 +177,4 @@ def _branches(walked: Walked) -> None:
             where = [slice(None)] * 3
             where[axis] = end
             jumps[tuple(where)] = np.maximum(jumps[tuple(where)], change)
-    walked.ok[jumps >= JUMP] = False
+    walked.ok[jumps >= jump] = False

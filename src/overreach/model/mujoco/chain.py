@@ -31,6 +31,7 @@ def extract(model: mujoco.MjModel, description: Description) -> Extracted:
     """Return the arm of `description` in its compiled model; raises SetupError for what is not there."""
     joints = [[joint_of(model, name) for name in group] for group in description.arm.groups]
     base, hand = body_of(model, description.base.body, "base.body"), body_of(model, description.hand.body, "hand.body")
+    _check_order(model, description, joints, base, hand)
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos0
     lock(model, data, description)
@@ -48,10 +49,10 @@ def extract(model: mujoco.MjModel, description: Description) -> Extracted:
         screws[k, :3] = R_b.T @ data.xaxis[first]
         screws[k, 3:6] = R_b.T @ (data.xanchor[first] - p_b)
         screws[k, 6] = float(slide)
-        limited = bool(model.jnt_limited[first])
-        least, most = model.jnt_range[first] if limited else (-ENDLESS, ENDLESS)
-        lower.append(float(least) * (len(group) if limited else 1))
-        upper.append(float(most) * (len(group) if limited else 1))
+        limits = [model.jnt_range[joint] for joint in group if model.jnt_limited[joint]]
+        # Coupled joints go alike: the one with the least room limits all.
+        lower.append(len(group) * max((float(least) for least, _ in limits), default=-ENDLESS))
+        upper.append(len(group) * min((float(most) for _, most in limits), default=ENDLESS))
         units.append("m" if slide else "rad")
         for other in group[1:]:
             if float(screws[k, :3] @ (R_b.T @ data.xaxis[other])) < 1.0 - STRAIGHT or not slide:
@@ -72,6 +73,27 @@ def extract(model: mujoco.MjModel, description: Description) -> Extracted:
     screws[:, 3:6] = (screws[:, 3:6] - shift) @ turn.T
     tip = np.concatenate(((turn @ R_b.T @ R_h).ravel(), turn @ (p_h - shift)))
     return Extracted(mount, screws, tip, tuple(lower), tuple(upper), tuple(units))
+
+
+def _check_order(
+    model: mujoco.MjModel, description: Description, joints: list[list[int]], base: int, hand: int
+) -> None:
+    """Raise SetupError unless the joints carry the hand, from the base outward, each once."""
+    path = [hand]
+    while path[-1] not in (0, base):
+        path.append(int(model.body_parentid[path[-1]]))
+    if path[-1] != base:
+        raise SetupError(f"hand.body: {description.hand.body!r} is not carried by base.body, {description.base.body!r}")
+    outward = [j for body in reversed(path[:-1]) for j in range(model.njnt) if int(model.jnt_bodyid[j]) == body]
+    given = [joint for group in joints for joint in group]
+    names = [model.joint(joint).name for joint in given]
+    for joint, name in zip(given, names, strict=True):
+        if joint not in outward:
+            raise SetupError(f"arm.joints: {name!r} does not carry the hand, {description.hand.body!r}")
+    ordered = [joint for joint in outward if joint in given]
+    if given != ordered:
+        right = ", ".join(model.joint(joint).name for joint in ordered)
+        raise SetupError(f"arm.joints must be each once, from the base outward: {right}; got {', '.join(names)}")
 
 
 ENDLESS = 1e3

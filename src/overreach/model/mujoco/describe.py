@@ -8,6 +8,7 @@ hand    the body at its end; the fingers' joints beyond it, its gripper
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import NamedTuple
 
@@ -221,21 +222,21 @@ def middle(model: mujoco.MjModel, joints: tuple[str, ...]) -> tuple[float, ...]:
     return tuple(values)
 
 
-def describe(path: Path) -> tuple[str, list[str], list[str]]:
+def describe(path: Path, named: str = "") -> tuple[str, list[str], list[str]]:
     """Return a first description of the robot in a model file, what was repaired, and the joints without a speed.
 
-    Raises SetupError.
+    named: the path by which the description is to name the file; by default as if it lay beside it. Raises SetupError.
     """
     source = spec_from_file(path)
     model = compiled(source.spec, f"the model file {str(path)!r}")
     found = guess(model, source.speeds, f"the model file {str(path)!r}")
     unknown = [joint for joint, (_, known) in zip(found.joints, found.speeds, strict=True) if not known]
-    return toml(found, path.stem, path.name, middle(model, found.joints)), source.warnings, unknown
+    return toml(found, path.stem, named or path.name, middle(model, found.joints)), source.warnings, unknown
 
 
 def run_describe(path: Path, out: Path | None) -> None:
     """Print the description, or write it; raises SetupError with nothing written."""
-    text, warnings, _ = describe(path)
+    text, warnings, _ = describe(path, Path(os.path.relpath(path, out.parent if out else Path())).as_posix())
     for warning in warnings:
         print(f"# warning: {warning}")
     print(text, end="")

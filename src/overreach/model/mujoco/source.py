@@ -8,11 +8,13 @@ from pathlib import Path
 
 import mujoco
 
-from overreach.errors import SetupError, told
+from overreach.errors import SetupError, UnknownNameError, told
 from overreach.extras import require
 from overreach.model.mujoco.urdf import Source, read_urdf
 
 BUILTIN = "overreach.model.mujoco"
+MADE = ("mobile4", "mobile7")
+"""Modules there that make a model."""
 
 
 def spec_of(model: str, folder: Path) -> Source:
@@ -22,11 +24,9 @@ def spec_of(model: str, folder: Path) -> Source:
     """
     kind, _, name = model.partition(":")
     if kind == "builtin" and name:
-        try:
-            made = importlib.import_module(f"{BUILTIN}.{name}")
-        except ImportError:
-            raise SetupError(f"there is no built-in model {name!r}") from None
-        spec: mujoco.MjSpec = made.spec()
+        if name not in MADE:
+            raise UnknownNameError("built-in model", name, MADE)
+        spec: mujoco.MjSpec = importlib.import_module(f"{BUILTIN}.{name}").spec()
         return Source(spec, [], {})
     if kind == "menagerie" and name:
         return spec_from_file(menagerie(name))

@@ -129,6 +129,8 @@ def _resolved(name: str, path: Path) -> Path | None:
     for scheme in ("package://", "model://"):
         if name.startswith(scheme):
             rest = Path(name.removeprefix(scheme))
+            if not rest.parts:
+                return None
             places = [parent for above in path.resolve().parents for parent in (above, above / "..")]
             places += [Path(one) for one in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if one]
             places += [Path(one) / "share" for one in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if one]
