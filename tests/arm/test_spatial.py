@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from overreach.arm.chain import Arm, Chain
 from overreach.arm.mount import Mount
+from overreach.arm.spatial import asked as asks
 from overreach.arm.spatial import step as layout
 from overreach.arm.spatial import task
 from overreach.arm.spatial.arm import SpatialArm, SpatialChain, turned, vector
@@ -117,17 +118,17 @@ def asked_at_random(random: np.random.Generator, arm: SpatialArm) -> Array:
     """Return what a step may be asked."""
     n = len(arm.channels)
     size = random.choice([0.1, 1.0, 4.0, 20.0])
-    asked = np.zeros(layout.ASKED + n)
-    asked[layout.U : layout.U + 3] = random.normal(0.0, 0.1 * size, 3)
-    asked[layout.W_C] = random.normal(0.0, 0.3)
-    asked[layout.DELTA] = random.uniform(-math.pi, math.pi) * (random.random() < 0.5)
-    asked[layout.PLAN : layout.PLAN + 3] = random.normal(0.0, 0.2 * size, 3) * (1.0, random.random() < 0.2, 1.0)
-    asked[layout.SLIP : layout.SLIP + 3] = random.normal(0.0, 0.02, 3) * (random.random() < 0.3)
-    asked[layout.WAS : layout.WAS + 3] = asked[layout.PLAN : layout.PLAN + 3] + random.normal(0.0, 0.02, 3)
-    asked[layout.STEP : layout.STEP + 3] = (0.015, 0.015, 0.04)
-    asked[layout.DT] = random.choice([0.005, 0.01])
-    asked[layout.S_X : layout.ASKED] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
-    asked[layout.ASKED :] = random.normal(0.0, 0.3, n) * (random.random() < 0.7)
+    asked = np.zeros(asks.ASKED + n)
+    asked[asks.U : asks.U + 3] = random.normal(0.0, 0.1 * size, 3)
+    asked[asks.W_C] = random.normal(0.0, 0.3)
+    asked[asks.DELTA] = random.uniform(-math.pi, math.pi) * (random.random() < 0.5)
+    asked[asks.PLAN : asks.PLAN + 3] = random.normal(0.0, 0.2 * size, 3) * (1.0, random.random() < 0.2, 1.0)
+    asked[asks.SLIP : asks.SLIP + 3] = random.normal(0.0, 0.02, 3) * (random.random() < 0.3)
+    asked[asks.WAS : asks.WAS + 3] = asked[asks.PLAN : asks.PLAN + 3] + random.normal(0.0, 0.02, 3)
+    asked[asks.STEP : asks.STEP + 3] = (0.015, 0.015, 0.04)
+    asked[asks.DT] = random.choice([0.005, 0.01])
+    asked[asks.S_X : asks.ASKED] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
+    asked[asks.ASKED :] = random.normal(0.0, 0.3, n) * (random.random() < 0.7)
     return asked
 
 
@@ -180,7 +181,7 @@ def test_a_step_ends_where_it_should_or_says_that_it_does_not(name: str, mode: s
         asked = asked_at_random(random, arm)
         out = np.empty(n + layout.DONE)
         arm.engine.step(q, chain.pose, chain.J, asked, out)
-        dt = asked[layout.DT]
+        dt = asked[asks.DT]
         after = q + out[:n] * dt
         speed, lower, upper = arm.limits[:, 2], arm.limits[:, 0], arm.limits[:, 1]
         assert (np.abs(out[:n]) <= speed * (1.0 + 1e-9)).all()
@@ -189,10 +190,10 @@ def test_a_step_ends_where_it_should_or_says_that_it_does_not(name: str, mode: s
         assert (after[inside] <= (upper - 0.02)[inside] + 1e-9).all()
         if out[n + layout.SCALE] >= 1.0:
             whole += 1
-            base = out[n : n + 3] + asked[layout.SLIP : layout.SLIP + 3]
+            base = out[n : n + 3] + asked[asks.SLIP : asks.SLIP + 3]
             end = arm.at(tuple(after.tolist()), Mount())
-            goal = where(chain.pose[9:], asked[layout.U : layout.U + 3], base, dt)
-            assert np.abs(end.pose[9:] - goal).max() <= TOL_V * arm.manner.reach * dt * (1.0 + 1e-6)
+            goal = where(chain.pose[9:], asked[asks.U : asks.U + 3], base, dt)
+            assert np.abs(end.pose[9:] - goal).max() <= min(TOL_V * arm.manner.reach, 1e-3) * dt * (1.0 + 1e-6)
     assert whole > 200
 
 
@@ -253,14 +254,14 @@ def test_the_posture_rests_where_the_workspace_was_measured(mode: str) -> None:
         away = rests + 0.6 * V[-1] / abs(V[-1]).max()  # where the hand stays, to the first order
         away = np.clip(away, arm.limits[:, 0] + 0.1, arm.limits[:, 1] - 0.1)
         q = home.settle(away[None], place, place, rest=0).q[0]
-        asked = np.zeros(layout.ASKED + n)
-        asked[layout.DT], asked[layout.COS], asked[layout.STEP : layout.STEP + 3] = 0.01, 1.0, 0.02
+        asked = np.zeros(asks.ASKED + n)
+        asked[asks.DT], asked[asks.COS], asked[asks.STEP : asks.STEP + 3] = 0.01, 1.0, 0.02
         out = np.empty(n + layout.DONE)
         hand, jacobian, places = np.empty(12), np.empty((6, n)), np.empty((n, 3))
         for _ in range(2000):
             arm.engine.forward(q, hand, jacobian, places)
             arm.engine.step(q, hand, jacobian, asked, out)
-            asked[layout.ASKED :] = out[:n]
+            asked[asks.ASKED :] = out[:n]
             q = q + out[:n] * 0.01
             fastest.append(float((abs(out[:n]) / arm.limits[:, SPEED]).max()))
         assert math.hypot(hand[9], hand[10]) == pytest.approx(l * R, abs=1e-3)
@@ -367,8 +368,8 @@ def test_an_arm_folded_back_is_told_of() -> None:
     assert off_by(arm, chain) > 1.5
     for one in both(arm, 1000.0):
         n = len(one.channels)
-        asked, out = np.zeros(layout.ASKED + n), np.empty(n + layout.DONE)
-        asked[layout.DT], asked[layout.COS], asked[layout.STEP : layout.STEP + 3], asked[0] = 0.01, 1.0, 0.02, 0.01
+        asked, out = np.zeros(asks.ASKED + n), np.empty(n + layout.DONE)
+        asked[asks.DT], asked[asks.COS], asked[asks.STEP : asks.STEP + 3], asked[0] = 0.01, 1.0, 0.02, 0.01
         one.engine.step(np.array(chain.joints), chain.pose, chain.J, asked, out)
         assert out[n + layout.WHY] == layout.OFF
         assert out[n + layout.SCALE] < 1.0

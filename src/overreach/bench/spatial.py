@@ -16,6 +16,7 @@ import numpy as np
 from overreach.arm.spatial.arm import SpatialArm
 from overreach.arm.spatial.engine import warm
 from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.step import DONE
 from overreach.bench.machine import describe
 from overreach.bench.measure import Candidate, Spread, in_turns, ratio, spread
 from overreach.bench.peers import Peer, peers
@@ -91,7 +92,7 @@ def step_of(model: DescribedRobot) -> Callable[[Met], None]:
     """Return what one decision computes."""
     engine, n = model.arm.engine, len(model.arm.channels)
     share = Exact(usual_blend(Exact().blend, model)).bind(model)
-    hand, J, places, out = np.empty(12), np.empty((6, n)), np.empty((n, 3)), np.empty(n + 10)
+    hand, J, places, out = np.empty(12), np.empty((6, n)), np.empty((n, 3)), np.empty(n + DONE)
 
     def step(met: Met) -> None:
         engine.forward(met.q, hand, J, places)

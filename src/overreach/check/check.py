@@ -154,7 +154,7 @@ def reach_base_path(model: DescribedRobot) -> tuple[float, float]:
     commands[: there - round(ramp / DT_S), 0] = v
     commands[there : there + back - round(ramp / DT_S), 0] = -v
     driven = drive(model, commands)
-    return length, float(np.abs(np.diff(driven.base[:, :2], axis=0)).sum())
+    return length, float(np.hypot(*np.diff(driven.base[:, :2], axis=0).T).sum())
 
 
 def _rms(values: Array) -> float:

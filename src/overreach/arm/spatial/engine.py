@@ -9,10 +9,11 @@ from typing import Any, Protocol, final
 
 import numpy as np
 
+from overreach.arm.spatial.asked import ASKED, COS, DT
 from overreach.arm.spatial.lean import Lean
 from overreach.arm.spatial.room import CHANNEL, HOME
 from overreach.arm.spatial.screws import Array, forward
-from overreach.arm.spatial.step import ASKED, COS, DONE, DT, HELD, SETUP, step
+from overreach.arm.spatial.step import DONE, HELD, SETUP, step
 from overreach.compiled import available, compile_all, is_ready, ready
 
 

@@ -17,7 +17,7 @@ SLIGHT = 1e-12
 """Damping that is always there, as a part of the trace: what is singular to the last bit has an inverse, too."""
 TINY = 1e-300
 LEAST = 0.03
-"""Least lambda, in parts of eps, of the inverse that ends a period where it should."""
+"""Least lambda, in parts of eps, of an inverse over some joints: so that it is never without."""
 DAMPED = 0.75
 """lambda = DAMPED eps (1 - (sigma / eps)^2), where sigma is below eps."""
 
@@ -137,12 +137,12 @@ def inverse(A: Array, w: Array, free: Array, eps: float, B: Array) -> float:
 
 
 def damping_beside(sigma: float, eps: float) -> float:
-    """Return lambda^2 for a posture nearby, some of whose joints may be held: so that it is never without."""
+    """Return lambda^2 for an inverse over the joints that are free, where sigma is that over all."""
     return max(damping(sigma, eps), (LEAST * eps) ** 2)
 
 
 def inverse_beside(A: Array, w: Array, free: Array, damped: float, B: Array) -> None:
-    """Write the inverse into `B` with a damping that is known."""
+    """Write the inverse over the joints that are free into `B`, with a damping that is known."""
     m = A.shape[0]
     scratch = np.empty((2, m, m))
     G, L = scratch[0], scratch[1]

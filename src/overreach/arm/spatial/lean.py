@@ -12,21 +12,19 @@ from typing import final
 import numpy as np
 
 from overreach.arm.spatial import task
+from overreach.arm.spatial.asked import ASKED, COS, DELTA, DT, PLAN, S_X, S_Y, SIN, SLIP, STEP, W_C, WAS, U, reach_for
 from overreach.arm.spatial.lean_fit import Fit, Floats
 from overreach.arm.spatial.lean_kinematics import Kinematics
-from overreach.arm.spatial.room import ENDLESS, NEAR_HOME, NULL_SPEED, OFF_LIMITS, SPEED, WEIGHT
+from overreach.arm.spatial.lean_room import joint_of, room, within
+from overreach.arm.spatial.room import NULL_SPEED, SPEED, WEIGHT
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.step import (
     APPROACH,
-    ASKED,
     AT_BOUND,
     AT_LIMIT,
     AT_SPEED,
     ATTEMPTS,
     CHANGING,
-    COS,
-    DELTA,
-    DT,
     ELL,
     EPS,
     FINE,
@@ -37,26 +35,16 @@ from overreach.arm.spatial.step import (
     NULL_GAIN,
     OFF,
     ONE_TURNING,
-    PLAN,
     R_HOME,
-    S_X,
-    S_Y,
     SETUP,
-    SIN,
     SLIGHTLY,
-    SLIP,
     SMALL_TURN,
-    STEP,
     STUCK,
     TOL_V,
     TOL_W,
     TURN_BACK,
-    W_C,
-    WAS,
     D,
-    U,
     half_turn,
-    reach_for,
 )
 from overreach.arm.spatial.turning import STRAIGHT, apart, yawed
 
@@ -77,7 +65,7 @@ class Lean:
         self._w = limits[:, WEIGHT].copy()
         self._speed = limits[:, SPEED].tolist()
         self._most_null = (NULL_SPEED * limits[:, SPEED]).tolist()
-        self._joints = [_joint(row, setup[MARGIN], setup[NULL_GAIN]) for row in limits.tolist()]
+        self._joints = [joint_of(row, setup[MARGIN], setup[NULL_GAIN]) for row in limits.tolist()]
         self._R_home = setup[R_HOME:SETUP].reshape(3, 3)
         self._approach = setup[APPROACH : APPROACH + 3]
         self._lengths = np.array([1.0, 1.0, 1.0, setup[ELL], setup[ELL], setup[ELL]])[:, None]
@@ -135,7 +123,7 @@ class Lean:
         T = self._task(bearing, bearing + f)
         A = self._rows(T, J)
         rates = ask[ASKED:]
-        low, high, soft_low, soft_high, null, change = _room(self._joints, q.tolist(), rates, dt)
+        low, high, soft_low, soft_high, null, change = room(self._joints, q.tolist(), rates, dt)
         fit = Fit(A, self._w, null, self._most_null, low, high, soft_low, soft_high, setup[EPS])
 
         def left_by(v_x: float, v_y: float, w: float, e: Three) -> Floats:
@@ -192,7 +180,7 @@ class Lean:
             if fraction < 1.0:
                 why = CHANGING
                 dq = [before + fraction * (one - before) for one, before in zip(dq, rates, strict=True)]
-                dq = _within(dq, low, high, rates, change)
+                dq = within(dq, low, high, rates, change)
                 base = [before + fraction * (one - before) for one, before in zip(base, was_base, strict=True)]
                 real = _plus(_moved(ask, *base), slip)
             place = _goal((x_h, y_h, z_h), (scale * u_x, scale * u_y, scale * u_z), real, dt)
@@ -210,7 +198,7 @@ class Lean:
                     missing[3:] = [0.0] * (m - 3)
                 free = [a + AT_BOUND < one < b - AT_BOUND for one, a, b in zip(dq, low, high, strict=True)]
                 more = fit.more(missing, free if m <= sum(free) < n else None)
-                dq = _within([one + x / dt for one, x in zip(dq, more, strict=True)], low, high, rates, change)
+                dq = within([one + x / dt for one, x in zip(dq, more, strict=True)], low, high, rates, change)
                 self._pose(q + np.array(dq) * dt, hand_1)
                 missing, size = self._missing(T_1, place, yaw_1, hand_1)
             off_v = math.sqrt(missing[0] ** 2 + missing[1] ** 2 + missing[2] ** 2) / dt
@@ -235,54 +223,6 @@ class Lean:
         missing = self._asks(T, (place[0] - x, place[1] - y, place[2] - z), e)
         folded = self._m == ONE_TURNING and angle > task.FOLDED
         return missing, angle if folded else math.hypot(*missing[3:]) / self._ell
-
-
-def _joint(limits: Floats, margin: float, gain: float) -> tuple[float, ...]:
-    """Return what `_room` needs of one joint."""
-    lower, upper, speed, braking, change, home, weight = limits
-    half = 0.5 * (upper - lower)
-    endless = half > ENDLESS
-    half = 1.0 if endless else half
-    return (
-        lower + margin, upper - margin, speed, braking, change, home, 0.5 * (lower + upper), half,
-        0.0 if endless else OFF_LIMITS, -gain * weight / half, speed * speed / (2.0 * braking),
-    )  # fmt: skip
-
-
-def _room(
-    joints: list[tuple[float, ...]], q: Floats, rates: Floats, dt: float
-) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-    """Return low, high of `room.bounds`, both within what can change, `room.downhill`, and the greatest changes."""
-    lows, highs, soft_lows, soft_highs, nulls, changes = [], [], [], [], [], []
-    square = dt * dt
-    for (first, last, speed, braking, change, home, middle, half, off, pull, way), x, before in zip(
-        joints, q, rates, strict=True
-    ):
-        ahead, behind, free = last - x, x - first, speed * dt + way
-        high, low = speed, -speed
-        if ahead < free:  # nearer to the limit than the way that it takes to stop
-            high = braking * (math.sqrt(square + 2.0 * ahead / braking) - dt) if ahead > 0.0 else 0.0
-        if behind < free:
-            low = -braking * (math.sqrt(square + 2.0 * behind / braking) - dt) if behind > 0.0 else 0.0
-        most = change * dt
-        y = (x - middle) / half
-        y2 = y * y
-        lows.append(low)
-        highs.append(high)
-        soft_lows.append(low if low > before - most else before - most)
-        soft_highs.append(high if high < before + most else before + most)
-        nulls.append(pull * (NEAR_HOME * (x - home) / half + off * y2 * y2 * y2 * y))
-        changes.append(most)
-    return lows, highs, soft_lows, soft_highs, nulls, changes
-
-
-def _within(rates: Floats, low: Floats, high: Floats, was: Floats, change: Floats) -> Floats:
-    """Return rates held to their bounds, then to how much they can change."""
-    held = []
-    for one, a, b, before, most in zip(rates, low, high, was, change, strict=True):
-        x = a if one < a else b if one > b else one
-        held.append(before - most if x < before - most else before + most if x > before + most else x)
-    return held
 
 
 def _moved(ask: Floats, v_x: float, v_y: float, w: float) -> Three:

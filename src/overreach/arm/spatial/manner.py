@@ -19,7 +19,9 @@ K_R = 10.0
 MARGIN = 0.02
 """Joints stay so far [rad, m] from their limits."""
 TOL_V, TOL_W = 0.0011, 0.01
-"""A step is as asked where its error is at most this: in parts of R a second, and in rad."""
+"""A step is as asked where its error is at most this: in parts of R a second, and in rad ..."""
+MOST_V = 1e-3
+"""... and, however long the arm is, in m/s."""
 
 
 class Manner(Record, frozen=True):
@@ -58,7 +60,7 @@ class Manner(Record, frozen=True):
         """Return what `step` takes, for a hand that has the attitude `R_home` (3, 3) at bearing 0."""
         setup = np.empty(step.SETUP)
         setup[: step.APPROACH] = (
-            self.held, self.ell, self.eps, NULL_GAIN, K_R, MARGIN, self.yaw, TOL_V * self.reach, TOL_W,
+            self.held, self.ell, self.eps, NULL_GAIN, K_R, MARGIN, self.yaw, min(TOL_V * self.reach, MOST_V), TOL_W,
         )  # fmt: skip
         setup[step.APPROACH : step.R_HOME] = self.approach
         setup[step.R_HOME :] = R_home.ravel()
