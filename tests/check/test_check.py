@@ -110,6 +110,20 @@ def test_a_reach_inside_leaves_the_base_alone() -> None:
         assert length == pytest.approx(0.1) or robot == "mobile4"
 
 
+@pytest.mark.parametrize("w", [0.3, -0.2])
+def test_a_hand_that_is_carried_does_not_creep_away(w: float) -> None:
+    """Once the base carries the hand alone, round in a circle for a minute, length and bearing stay where they were."""
+    model = load_model("mobile7")
+    assert isinstance(model, DescribedRobot)
+    commands = np.tile((0.9 * model.command.v_c, w, 0.0), (7000, 1))
+    driven = drive(model, commands)
+    _, p, _ = model.arm.posture_at_home.forward(driven.q[1500:])
+    l, psi = np.hypot(p[:, 0], p[:, 1]), np.arctan2(p[:, 1], p[:, 0])
+    assert driven.mu[1500:].min() > 0.99
+    assert np.abs(l - l[0]).max() < 1e-3
+    assert np.abs(psi - psi[0]).max() < 0.01
+
+
 def test_processes_do_not_change_the_numbers(tmp_path: Path) -> None:
     """By one process or two: the same numbers, in the file as well."""
     from overreach.commands import check as command
