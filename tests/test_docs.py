@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -8,6 +9,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
+
+from tests import robots_check as robots
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text("utf-8")
@@ -42,6 +45,13 @@ def test_readme_numbers_are_measured() -> None:
     for law in ("paper", "exact"):
         error = overreach.simulate("aside", law).summary.ee_error_max
         assert f"{error:.3f}" in README
+
+
+def test_what_the_robots_came_to_is_in_the_file() -> None:
+    """The table of docs/robots.md is that of build/robots.json, to the letter: a run has written it."""
+    report = json.loads(robots.FILE.read_text())
+    assert re.fullmatch(r"[0-9a-f]{40}", report["commit"])
+    assert robots.parts(robots.PAGE.read_text("utf-8"))[1] == robots.table(report)
 
 
 def test_links_lead_somewhere() -> None:
