@@ -112,10 +112,10 @@ def fit(
             excess = max(a[k] + b[k] - high[k], low[k] - a[k] - b[k])
             if excess > beyond:
                 beyond, worst = excess, k
-        if most >= least and most > best:
-            best, limiting = most, tight
+        if most >= least - SLACK and most > best:  # at a bound to the last bit is not beyond it
+            best, limiting = max(0.0, most), tight
             for k in range(n):
-                out[k] = most * a[k] + b[k]
+                out[k] = best * a[k] + b[k]
             if best >= 1.0 - SLACK:
                 return 1.0, sigma, -1
         if worst < 0:

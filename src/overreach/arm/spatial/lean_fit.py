@@ -90,9 +90,9 @@ class Fit:
                 excess = max(a[k] + b[k] - high[k], low[k] - a[k] - b[k])
                 if excess > beyond:
                     beyond, worst = excess, k
-            if most >= least and most > best:
-                best, limiting = most, tight
-                out = most * a + b
+            if most >= least - SLACK and most > best:
+                best, limiting = max(0.0, most), tight
+                out = best * a + b
                 if best >= 1.0 - SLACK:
                     return 1.0, -1, out.tolist()
             if worst < 0:
