@@ -107,6 +107,7 @@ ENDS: dict[str, tuple[str, Callable[[Half, Log], None]]] = {
 @pytest.mark.parametrize("fault", ENDS)
 def test_the_robot_comes_to_rest_without_its_loop(fault: str, log: Log, reached: Reached) -> None:
     """Killed, stopped, crashed or hung at any time: at rest 2 periods + v/a + a tick later, and nothing is left."""
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)  # a shell lets what it starts in the background ignore it
     law, act = ENDS[fault]
     rng = random.Random(f"{reached.seed} {fault}")
     times = reached.times(50)
