@@ -203,8 +203,8 @@ def step(
             change = abs(dq[k] - was[k])
             if change > limits[k, CHANGE] * dt * (1.0 + SLIGHTLY):
                 fraction = min(fraction, limits[k, CHANGE] * dt / change)
-        astray = part_of_x < 0.0 or (fraction < 1.0 and short_of(A, dq, part_of_x, x, x_c) > setup[TOL_V])
-        if fraction < 1.0 and astray and attempt < ATTEMPTS - 1:
+        astray = fraction < 1.0 and (part_of_x < 0.0 or short_of(A, dq, part_of_x, x, x_c) > setup[TOL_V])
+        if astray and attempt < ATTEMPTS - 1:
             continue  # part of the way to rates that do not move the hand as they should leads anywhere
         if fraction < 1.0:  # all channels go the same part of their way
             why = CHANGING
