@@ -336,6 +336,36 @@ def test_a_hand_that_begins_turned_turns_back_in_its_place(robot: str) -> None:
     assert turned_back >= 12
 
 
+def test_a_level_hand_levels_at_its_own_pace() -> None:
+    """Its pitch and roll go back at the whole 0.3 rad/s, however far its yaw, which is free, is from the bearing."""
+    model, random, dt = load("mobile7#level"), np.random.default_rng(3), 0.01
+    for _ in range(6):
+        pilot, moves = Pilot(model, Exact(usual_blend(Exact().blend, model))), KinematicRobot(model)
+        wrist = random.uniform(-0.6, 0.6, 3)
+        moves._theta = (*moves.true.q[:-3], *(moves.true.q[-3:] + wrist).tolist())
+        pilot.ask(ArmRequest(1), 0.0)
+        state, off = moves.read(0.0), []
+        for k in range(60):
+            now = k * dt
+            off.append(off_level(model.arm, model.arm.at(state.q, model.mount)))
+            tick = pilot.tick(state, Command(1, k + 1, 1, True, Twist(v_x=0.01), seen=now), now, dt)
+            moves.write(tick.base, tick.joints, None, now, now + dt)
+            state = moves.read(now + dt)
+        assert off[20] - off[50] == pytest.approx(0.3 * 0.3, rel=0.02)
+
+
+def off_level(arm: Arm, chain: Chain) -> float:
+    """Return how far [rad] a hand is from the pitch and roll that it is to have where it is."""
+    assert isinstance(arm, SpatialArm)
+    assert isinstance(chain, SpatialChain)
+    goal, e = turned_to(arm, chain.pose), np.empty(3)
+    apart(goal, chain.pose, e)
+    T = np.empty((task.count(arm.manner.held), 6))
+    x, y = chain.hand[:2]
+    task.rows(arm.manner.held, math.atan2(y, x), goal, np.array(arm.manner.approach), 1.0, T)
+    return float(np.linalg.norm(T[3:, 3:] @ e))
+
+
 def off_by(arm: Arm, chain: Chain) -> float:
     """Return how far [rad] a hand is from the attitude that it is to have where it is."""
     assert isinstance(arm, SpatialArm)

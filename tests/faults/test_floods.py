@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import socket
 import statistics
@@ -105,7 +106,7 @@ def test_floods(what: str, reached: Reached) -> None:
             bare = [sys.executable, "-m", "tests.faults.beside", str(seconds)]
             with subprocess.Popen(bare, stdout=subprocess.PIPE, text=True) as beside:
                 p99, most, moved, paused = apart(observer, driver, seconds)
-                machine = beside.communicate()[0].strip()
+                machine_p99, machine_most = zip(*json.loads(beside.communicate()[0]), strict=True)
             assert moved > 0.5 or what == "stop"  # nobody's messages crowd out those of who drives
             took = []
             for _ in range(5):
@@ -113,8 +114,9 @@ def test_floods(what: str, reached: Reached) -> None:
                 assert observer.link.request(ResetRequest()) == Accepted()
                 took.append(time.monotonic() - begun)
             stop = stopped(observer)
-        assert statistics.median(p99) < 2.0
-        assert statistics.median(most) < 10.0
+        # What the machine withholds from a bare loop at the same time is not of the flood's doing.
+        assert statistics.median(p99) < 2.0 + statistics.median(machine_p99)
+        assert statistics.median(most) < 10.0 + statistics.median(machine_most)
         assert max(took) < 1.0
         assert stop < 0.3 + NOISE_S
         again(driver)
@@ -125,7 +127,7 @@ def test_floods(what: str, reached: Reached) -> None:
             "floods of requests, connections, frames",
             f"4 x 3,000 {what} a second: between writes {statistics.median(p99):.2f} ms more than a period (p99), "
             f"{max(most):.1f} ms at most, within 2 ms in {sooner} of {len(most)} s (a bare loop beside it: "
-            f"{machine} ms late at most; without a flood, {max(alone):.1f} ms), {paused} pauses; "
+            f"{max(machine_most):.1f} ms late at most; without a flood, {max(alone):.1f} ms), {paused} pauses; "
             f"Reset answered in {max(took) * 1e3:.0f} ms, Stop in force after {max(0.0, stop) * 1e3:.0f} ms",
         )
 

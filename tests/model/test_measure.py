@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import tomllib
+from itertools import product
 from pathlib import Path
 
 import msgspec
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from overreach.arm.spatial import task
+from overreach.arm.spatial.screws import Array
 from overreach.errors import SetupError, WorkspaceError
 from overreach.model import catalogue
 from overreach.model.cache import keep, kept
@@ -176,10 +178,13 @@ def test_the_table_is_the_description_s() -> None:
 def test_a_table_is_replaced_however_it_was_written() -> None:
     """With a remark behind its name, or spaces in it; what stands behind it stays, remarks as well."""
     found = parts("mobile4").description.workspace["follow"]
-    text = "[ workspace.follow ]  # by hand\nl = [0.1, 0.2]\n# not ours\n\n# of the hand\n[hand]\nbody = 'x'\n"
-    assert with_table(text, found, "follow") == (
-        f"# not ours\n\n# of the hand\n[hand]\nbody = 'x'\n\n{table(found, 'follow')}"
-    )
+    rest = "# not ours\n\n# of the hand\n[hand]\nbody = 'x'\n"
+    text = f"[ workspace.follow ]  # by hand\nl = [0.1, 0.2]\n{rest}"
+    assert with_table(text, found, "follow") == f"{table(found, 'follow')}{rest}"
+    assert with_table(rest, found, "follow") == f"{rest}\n{table(found, 'follow')}"
+    twice = with_table(with_table(f"{rest}\n\n", found, "follow"), found, "fixed")
+    assert with_table(twice, found, "follow") == twice
+    assert with_table("[workspace.follow]\n[hand]\n", found, "follow") == f"{table(found, 'follow')}\n[hand]\n"
     with pytest.raises(SetupError, match=r"\[workspace.follow\] cannot be put"):
         with_table("workspace = 3\n", found, "follow")
 
@@ -206,16 +211,34 @@ def test_what_touches_is_as_near_as_is_said() -> None:
     assert told > 10
 
 
-def test_what_is_close_at_home_must_not_touch() -> None:
-    """A pair that is within the distance at home may be so elsewhere, but is told of where they are in each other."""
+def test_what_is_close_at_home_keeps_half_of_that() -> None:
+    """A pair that is within the distance at home may be so elsewhere, down to half of what lies between them there."""
     found = parts("mobile7")
-    contacts = Contacts(found.model, found.description, 1.0)  # all are that close at home
+    whole, half = [Contacts(found.model, found.description, 0.1, part) for part in (1.0, 0.5)]
     lower, upper = found.arm.limits[:, 0], found.arm.limits[:, 1]
-    random = np.random.default_rng(6)
-    assert not contacts.touching(np.array(found.arm.home))
-    seen = [contacts.touching(q) for q in random.uniform(lower, upper, (200, len(lower)))]
-    assert any(seen)
-    assert not all(seen)
+    random, data = np.random.default_rng(6), mujoco.MjData(found.model)
+    at_home = np.array(found.arm.home)
+
+    def apart(q: Array, pair: tuple[int, int]) -> float:
+        for channel, at in zip(found.arm.channels, q, strict=True):
+            data.joint(channel.moves).qpos[0] = at
+        mujoco.mj_kinematics(found.model, data)
+        geoms = [np.flatnonzero(found.model.geom_bodyid == body) for body in pair]
+        return float(min(mujoco.mj_geomDistance(found.model, data, *ab, 5.0, None) for ab in product(*geoms)))
+
+    assert not whole.touching(at_home)
+    told, quiet = 0, 0
+    for q in random.uniform(lower, upper, (200, len(lower))):
+        seen = whole.touching(q)
+        assert half.touching(q) <= seen
+        for pair in seen:
+            assert apart(q, pair) <= 1.05 * min(0.1, 0.5 * apart(at_home, pair))  # MuJoCo's two ways differ
+        for pair in half.touching(q):
+            assert apart(q, pair) <= 1.05 * min(0.05, 0.25 * apart(at_home, pair))
+        told += bool(seen)
+        quiet += not seen
+    assert told > 10
+    assert quiet > 10
 
 
 def test_a_home_that_was_found_has_its_own_hash(capsys: pytest.CaptureFixture[str]) -> None:

@@ -117,10 +117,11 @@ class Lean:
         c, s_ = x_h / l, y_h / l
         bearing = math.atan2(y_h, x_h)
         f, inside = task.yielding(ask[DELTA], setup[D]) if setup[D] > 0.0 else (0.0, 0.0)
-        angle, (e_x, e_y, e_z) = self._apart(hand, bearing + f)
-        k_r = min(setup[K_R], TURN_BACK / max(angle, 1e-9))
-        e = (e_x * k_r, e_y * k_r, e_z * k_r)
         T = self._task(bearing, bearing + f)
+        angle, e = self._apart(hand, bearing + f)
+        held = angle if T is None else math.hypot(*(T @ e).tolist()) / self._ell
+        k_r = min(setup[K_R], TURN_BACK / max(held, 1e-9))
+        e = (e[0] * k_r, e[1] * k_r, e[2] * k_r)
         A = self._rows(T, J)
         rates = ask[ASKED:]
         low, high, soft_low, soft_high, null, change = room(self._joints, q.tolist(), rates, dt)

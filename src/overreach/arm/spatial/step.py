@@ -41,7 +41,7 @@ from overreach.arm.spatial.fit import fit
 from overreach.arm.spatial.inverse import damping_beside, inverse_beside, rates
 from overreach.arm.spatial.room import CHANGE, NULL_SPEED, SPEED, WEIGHT, bounds, downhill
 from overreach.arm.spatial.screws import Array, forward
-from overreach.arm.spatial.task import FOLDED, count, product, rows, yielding
+from overreach.arm.spatial.task import FOLDED, count, held_part, product, rows, yielding
 from overreach.arm.spatial.turning import apart, yawed
 
 HELD, ELL, EPS, NULL_GAIN, K_R, MARGIN, D, TOL_V, TOL_W = range(9)
@@ -139,8 +139,9 @@ def step(
     if setup[D] > 0.0:
         f, inside = yielding(asked[DELTA], setup[D])
     yawed(R_home, bearing + f, R)
-    k_r = min(setup[K_R], TURN_BACK / max(apart(R, hand, e), 1e-9))
+    apart(R, hand, e)
     rows(held, bearing, R, approach, ell, T)
+    k_r = min(setup[K_R], TURN_BACK / max(held_part(T, ell, e), 1e-9))
     product(T, J, A)
     for k in range(n):
         w[k], most_null[k] = limits[k, WEIGHT], NULL_SPEED * limits[k, SPEED]

@@ -65,6 +65,15 @@ def product(T: Array, J: Array, A: Array) -> None:
             A[i, k] = T[i, 3] * J[3, k] + T[i, 4] * J[4, k] + T[i, 5] * J[5, k]
 
 
+def held_part(T: Array, ell: float, e: Array) -> float:
+    """Return how much [rad] of the rotation vector `e` (3,) [rad] is about the turnings that are held."""
+    square = 0.0
+    for i in range(3, T.shape[0]):
+        one = (T[i, 3] * e[0] + T[i, 4] * e[1] + T[i, 5] * e[2]) / ell
+        square += one * one
+    return math.sqrt(square)
+
+
 def yielding(wanted: float, most: float) -> tuple[float, float]:
     """Return (f, df/dwanted): how far the hand's yaw is past the bearing, where it is wanted `wanted` [rad] past it.
 

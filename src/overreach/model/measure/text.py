@@ -40,14 +40,22 @@ def with_table(text: str, measured: Measured, mode: str) -> str:
     """
     kept: list[str] = []
     own: list[str] | None = None
+    place = None
     for line in text.splitlines():
         if line.lstrip().startswith("["):
             kept += _behind(own or [])
             own = [] if re.match(rf"\s*\[\s*workspace\s*\.\s*[\"']?{mode}[\"']?\s*\]", line) else None
+            place = len(kept) if own is not None else place
         (kept if own is None else own).append(line)
     kept += _behind(own or [])
-    body = "\n".join(kept).rstrip()
-    whole = f"{body}\n\n{table(measured, mode)}" if body else table(measured, mode)
+    made = table(measured, mode).splitlines()
+    if place is None:
+        place = len("\n".join(kept).rstrip().splitlines())
+        kept = [*kept[:place], *([""] if place else [])]
+        place = len(kept)
+    elif place < len(kept) and kept[place].lstrip().startswith("["):
+        made.append("")
+    whole = "\n".join([*kept[:place], *made, *kept[place:]]).rstrip() + "\n"
     try:
         tomllib.loads(whole)
     except tomllib.TOMLDecodeError as error:

@@ -15,13 +15,18 @@ from overreach.model.mujoco.chain import HINGE, joint_of, lock
 ALWAYS = 0.75
 """Bodies that touch in so many random postures are neighbours that always do."""
 POSTURES = 40
+OF_HOME = 0.5
+"""Bodies that are close to each other at home may come as close as this part of what lies between them there."""
 
 
 @final
 class Contacts:
-    """Which bodies of a robot come closer than `distance` [m]; those that are so at home may, as long as none touch."""
+    """Which bodies of a robot come closer than `distance` [m], or than half of what lies between them at home.
 
-    def __init__(self, model: mujoco.MjModel, description: Description, distance: float) -> None:
+    part: of both. What is looked for while the robot is driven is a part of what its workspace was measured with.
+    """
+
+    def __init__(self, model: mujoco.MjModel, description: Description, distance: float, part: float = 1.0) -> None:
         model = copy(model)  # the margins are ours alone
         self._model, self._data = model, mujoco.MjData(model)
         lock(model, self._data, description)
@@ -30,12 +35,15 @@ class Contacts:
         self._moving = self._after_the_first_hinge(groups)
         self._lower = np.array([model.jnt_range[joint_of(model, group[0])][0] for group in groups])
         self._upper = np.array([model.jnt_range[joint_of(model, group[0])][1] for group in groups])
+        home = np.array(description.home)
         model.geom_margin[:] = 0.0
         self._neighbours = self._often()
-        self.at_home = self._pairs(np.array(description.home)) - self._neighbours
+        self.at_home = set(self._near(home)) - self._neighbours
         """Bodies that touch at home, and should not."""
-        model.geom_margin[:] = 0.5 * distance  # of both of a pair together
-        self._usual = self._pairs(np.array(description.home)) | self._neighbours
+        model.geom_margin[:] = 0.5 * distance / OF_HOME  # of both of a pair together
+        self._least = {pair: part * max(OF_HOME * apart, 0.0) for pair, apart in self._near(home).items()}
+        self._distance = part * distance
+        model.geom_margin[:] = 0.5 * self._distance
 
     def _after_the_first_hinge(self, groups: tuple[tuple[str, ...], ...]) -> Array:
         """Say of each body whether it moves with the arm: what only the lift carries may be close to the rest."""
@@ -57,36 +65,39 @@ class Contacts:
             for address in addresses:
                 self._data.qpos[address] = value / len(addresses)
 
-    def _pairs(self, q: Array) -> set[tuple[int, int]]:
+    def _near(self, q: Array) -> dict[tuple[int, int], float]:
+        """Return how far apart [m] are the pairs of bodies, of which the arm moves one, that are within the margins."""
         self.put(q)
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
-        return self._found(np.inf)
-
-    def _found(self, below: float) -> set[tuple[int, int]]:
-        """Return the pairs of bodies, of which the arm moves one, that MuJoCo has found closer than `below` [m]."""
+        near: dict[tuple[int, int], float] = {}
         if not self._data.ncon:
-            return set()
-        found = set()
+            return near
         contact = self._data.contact
-        for one, other in self._model.geom_bodyid[contact.geom[contact.dist < below]].tolist():
+        bodies = self._model.geom_bodyid[contact.geom].tolist()
+        for (one, other), apart in zip(bodies, contact.dist.tolist(), strict=True):
             if self._moving[one] or self._moving[other]:
-                found.add((min(one, other), max(one, other)))
-        return found
+                pair = min(one, other), max(one, other)
+                near[pair] = min(apart, near.get(pair, np.inf))
+        return near
 
     def _often(self) -> set[tuple[int, int]]:
         random = np.random.default_rng(0)
         counts: dict[tuple[int, int], int] = {}
         for _ in range(POSTURES):
             q = random.uniform(np.maximum(self._lower, -3.0), np.minimum(self._upper, 3.0))
-            for pair in self._pairs(q):
+            for pair in self._near(q):
                 counts[pair] = counts.get(pair, 0) + 1
         return {pair for pair, count in counts.items() if count >= ALWAYS * POSTURES}
 
     def touching(self, q: Array) -> set[tuple[int, int]]:
-        """Return the pairs of bodies that at joints `q` touch, or are closer than the distance and not so at home."""
-        close = self._pairs(q) - self._usual
-        return close | (self._found(0.0) - self._neighbours)
+        """Return the pairs of bodies that at joints `q` are closer than they may be."""
+        near = self._near(q)
+        return {
+            pair
+            for pair, apart in near.items()
+            if apart < self._least.get(pair, self._distance) and pair not in self._neighbours
+        }
 
     def names(self, pairs: set[tuple[int, int]]) -> str:
         """Return pairs of bodies in words."""

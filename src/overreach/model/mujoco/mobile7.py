@@ -48,7 +48,7 @@ def spec() -> mujoco.MjSpec:
 
     carriage = base.add_body(name="carriage", pos=(0.04, 0.0, 0.55))
     slide(carriage, "lift", Z, 0.0, 0.4, damping=200.0)
-    box(carriage, (0.0, 0.0, 0.0), (0.03, 0.08, 0.09), 3.0, LIMB)
+    box(carriage, (-0.01, 0.0, -0.03), (0.02, 0.08, 0.06), 3.0, LIMB)
     shoulder = carriage.add_body(name="shoulder", pos=(0.08, 0.0, 0.0))
     hinge(shoulder, "arm_1", Z, -2.6, 2.6, 2.0)
     cylinder(shoulder, (0.0, 0.0, 0.02), 0.055, 0.05, 2.2, LIMB)

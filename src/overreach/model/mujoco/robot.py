@@ -23,7 +23,7 @@ from overreach.types import Channel
 
 CONTACT = 0.022
 """Bodies may come as close as this, in parts of R."""
-ALGORITHM = "3"
+ALGORITHM = "4"
 """To be changed with the algorithm that measures."""
 STILL_M, STILL_RAD = 0.01, 0.105
 """Rates [m/s, rad/s] below which a joint may stand still."""
@@ -41,8 +41,8 @@ class Parts(NamedTuple):
     warnings: list[str]
 
     def contacts(self, part: float = 1.0) -> Contacts:
-        """Return what tells of the arm touching its robot; part: of the usual distance."""
-        return Contacts(self.model, self.description, part * CONTACT * self.arm.manner.reach)
+        """Return what tells of the arm touching its robot; part: of the usual distances."""
+        return Contacts(self.model, self.description, CONTACT * self.arm.manner.reach, part)
 
 
 def parts_of(description: Description, folder: Path) -> Parts:
