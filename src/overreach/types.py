@@ -151,7 +151,8 @@ class Split(Record, frozen=True):
     mu, sigma: the base's share of linear and of angular motion, 0 (arm) to 1 (base);
     v_b [m/s], w_b [rad/s]: base twist; v_m = dl/dt [m/s], w_m = dpsi/dt [rad/s]: the arm's rates;
     scale: the part of the command that is feasible, 0 to 1 (all rates are scaled alike);
-    verdict: MOVING, or why the law gives no motion (then all rates and the scale are 0).
+    verdict: MOVING, or why the law gives no motion (then all rates and the scale are 0);
+    v_y [m/s]: the base's rate to its left, None for a base that cannot move so.
     """
 
     mu: float
@@ -162,6 +163,7 @@ class Split(Record, frozen=True):
     w_m: float
     scale: float = 1.0
     verdict: Verdict = Verdict.MOVING
+    v_y: float | None = None
 
 
 class Plan(Record, frozen=True):
@@ -289,9 +291,12 @@ class Decision(Record, frozen=True):
     @property
     def base(self) -> BaseTwist:
         """The base twist that is written."""
-        return BaseTwist(self.split.v_b, 0.0, self.split.w_b)
+        return BaseTwist(self.split.v_b, self.split.v_y or 0.0, self.split.w_b)
 
     @property
     def rates(self) -> tuple[float, ...]:
         """All that is written, channel by channel."""
-        return (self.split.v_b, self.split.w_b, *self.joints)
+        split = self.split
+        if split.v_y is None:
+            return (split.v_b, split.w_b, *self.joints)
+        return (split.v_b, split.v_y, split.w_b, *self.joints)

@@ -35,7 +35,7 @@ from overreach.testing.arm import check_arm
 from overreach.types import Channel, Command, Twist
 from overreach.verdicts import Verdict
 
-ROBOTS = [("mobile7", "follow"), ("mobile7", "fixed"), ("mobile4", "follow")]
+ROBOTS = [("mobile7", "follow"), ("mobile7", "fixed"), ("mobile4", "follow"), ("omni5", "follow")]
 IDS = [f"{name} {mode}" for name, mode in ROBOTS]
 
 

@@ -34,6 +34,9 @@ def test_streams_are_what_they_say() -> None:
     assert one.shape == (2000, 3)
     assert np.abs(one).max(axis=0) == pytest.approx((0.3, 0.3, 0.08))
     assert np.abs(np.diff(one, axis=0)).max(axis=0)[0] < 2.0 * DT_S
+    four = stream("smooth", 3, 5, MOST, aside=True)
+    assert (four[:, :3] == one).all()
+    assert np.abs(four[:, 3]).max() == pytest.approx(0.3)
     steps = stream("steps", 3, 5, MOST)
     assert 5 < np.count_nonzero(np.diff(steps[:, 0])) < 60
     assert (np.abs(steps) <= (0.3, 0.3, 0.08)).all()
@@ -78,6 +81,8 @@ def test_a_judge_that_is_told_the_truth() -> None:
         ("mobile7#fixed", "smooth"),
         ("mobile4", "smooth"),
         ("mobile4", "steps"),
+        ("omni7", "smooth"),
+        ("omni5", "smooth"),
     ],
 )
 def test_our_robots_follow(robot: str, kind: str) -> None:
@@ -93,7 +98,7 @@ def test_our_robots_follow(robot: str, kind: str) -> None:
     assert found.ee_error_max <= 1e-3
     assert found.orientation_error_max <= 1e-3
     assert found.joint_limit_violations == found.self_contacts == 0
-    assert found.lateral_base_max == 0.0
+    assert found.lateral_base_max == 0.0 or robot.startswith("omni")
     assert found.out_l <= 3e-3
     assert found.out_psi <= 0.03
     assert found.out_z <= 1e-3
@@ -102,12 +107,12 @@ def test_our_robots_follow(robot: str, kind: str) -> None:
 
 def test_a_reach_inside_leaves_the_base_alone() -> None:
     """A reach that fits between the bands: the base does not move at all."""
-    for robot in ("mobile7", "mobile7#fixed", "mobile4"):
+    for robot in ("mobile7", "mobile7#fixed", "mobile4", "omni7", "omni5"):
         model = load_model(robot)
         assert isinstance(model, DescribedRobot)
         length, path = reach_base_path(model)
         assert path == 0.0
-        assert length == pytest.approx(0.1) or robot == "mobile4"
+        assert length == pytest.approx(0.1) or robot in ("mobile4", "omni5")
 
 
 @pytest.mark.parametrize("w", [0.3, -0.2])
@@ -122,6 +127,20 @@ def test_a_hand_that_is_carried_does_not_creep_away(w: float) -> None:
     assert driven.mu[1500:].min() > 0.99
     assert np.abs(l - l[0]).max() < 1e-3
     assert np.abs(psi - psi[0]).max() < 0.01
+
+
+@pytest.mark.parametrize(("robot", "v", "w"), [("omni7", 0.7, 0.25), ("mobile7", 0.7, 0.25)])
+def test_a_hand_that_is_carried_and_swept_does_not_creep_away(robot: str, v: float, w: float) -> None:
+    """While the base carries the hand outward and the arm sweeps it from one bearing to another, the length stays."""
+    model = load_model(robot)
+    assert isinstance(model, DescribedRobot)
+    first = np.tile((model.command.v_c, 0.0, 0.0), (500, 1))
+    driven = drive(model, np.concatenate((first, np.tile((v * model.command.v_c, w, 0.0), (700, 1)))))
+    _, p, _ = model.arm.posture_at_home.forward(driven.q[500:])
+    l, psi = np.hypot(p[:, 0], p[:, 1]), np.arctan2(p[:, 1], p[:, 0])
+    assert driven.mu[500:].min() > 0.9
+    assert np.ptp(psi) > 0.1
+    assert l.max() <= model.workspace.l_max + 1e-5
 
 
 def test_processes_do_not_change_the_numbers(tmp_path: Path) -> None:

@@ -19,7 +19,13 @@ from overreach.model.workspace import Workspace
 from overreach.types import BaseTwist, Command, Pose
 
 STATIC = Path(overreach.__file__).parent / "cockpit" / "static"
-FINGERPRINTS = {2: "6162737beaea6836", 3: "df4c228980fe815f", 4: "0ad8f1bee0b373b8", 5: "60d5d345c4cab49f"}
+FINGERPRINTS = {
+    2: "6162737beaea6836",
+    3: "df4c228980fe815f",
+    4: "0ad8f1bee0b373b8",
+    5: "60d5d345c4cab49f",
+    6: "cf8c6fe3be8d5564",
+}
 """Protocol -> what its messages are, docstrings included: what a field means stands there."""
 
 

@@ -28,7 +28,7 @@ from overreach.model.measure.text import drawing, table, with_table
 from overreach.model.mujoco.contact import Contacts
 from overreach.model.mujoco.robot import Parts, parts_of
 
-OURS = ("mobile7", "mobile4")
+OURS = ("mobile7", "mobile4", "omni7", "omni5")
 
 
 @pytest.fixture(autouse=True)

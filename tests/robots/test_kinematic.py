@@ -20,13 +20,15 @@ from tests.strategies import angles
 REST = (0.0, 0.0)
 
 
-@given(st.floats(-5, 5), st.floats(-5, 5), angles, st.floats(-1, 1), st.floats(-3, 3), st.floats(0, 10))
-def test_arc_is_the_matrix_exponential(x: float, y: float, theta: float, v: float, w: float, dt: float) -> None:
+@given(*[st.floats(-5, 5)] * 2, angles, *[st.floats(-1, 1)] * 2, st.floats(-3, 3), st.floats(0, 10))
+def test_arc_is_the_matrix_exponential(
+    x: float, y: float, theta: float, v: float, v_y: float, w: float, dt: float
+) -> None:
     """The base's arc is the pose times exp(twist dt) in SE(2), for any step and for w = 0."""
     c, s = math.cos(theta), math.sin(theta)
     pose = np.array([[c, -s, x], [s, c, y], [0, 0, 1]])
-    after = pose @ expm(np.array([[0.0, -w, v], [w, 0.0, 0.0], [0.0, 0.0, 0.0]]) * dt)
-    got = arc(x, y, theta, v, w, dt)
+    after = pose @ expm(np.array([[0.0, -w, v], [w, 0.0, v_y], [0.0, 0.0, 0.0]]) * dt)
+    got = arc(x, y, theta, v, w, dt, v_y)
     assert got[:2] == pytest.approx((after[0, 2], after[1, 2]), abs=1e-9)
     assert got[2] == theta + w * dt
 

@@ -41,7 +41,7 @@ def rows_of(path: Path) -> tuple[list[str], list[dict[str, str]]]:
         return list(reader.fieldnames or []), list(reader)
 
 
-@pytest.mark.parametrize("robot", ["mobile7", "mobile4"])
+@pytest.mark.parametrize("robot", ["mobile7", "mobile4", "omni5"])
 @pytest.mark.parametrize("scenario", ["own", "mixed"])
 def test_mujoco_agrees_with_every_row(robot: str, scenario: str, tmp_path: Path) -> None:
     """The hand's pose is MuJoCo's of the logged joints; its differences are u where the scale is 1: mostly."""

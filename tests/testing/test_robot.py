@@ -30,6 +30,8 @@ def test_the_simulated_robot_conforms(imperfection: Imperfection) -> None:
 def test_robots_by_name_conform() -> None:
     """A robot that is loaded by its name is one."""
     check_robot(lambda now: load_robot("planar", now))
+    check_robot(lambda now: load_robot("mobile4", now))
+    check_robot(lambda now: load_robot("omni5", now))
 
 
 def test_a_robot_with_an_arm_in_space_conforms() -> None:

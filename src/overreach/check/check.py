@@ -78,7 +78,7 @@ def _one(which: str, kind: str, seed: int, guess: Workspace | None, number: int)
     model, contacts = _robot(which)
     if guess is not None:
         model = model.driven_in(guess)
-    driven = drive(model, stream(kind, seed, number, model.command))
+    driven = drive(model, stream(kind, seed, number, model.command, model.base.omni))
     return judge(model, driven, lambda q: bool(contacts.touching(q)))
 
 

@@ -42,24 +42,25 @@ class Driven(NamedTuple):
 
 
 def commanded(model: DescribedRobot, commands: Array) -> list[Tick]:
-    """Return the ticks of a drive by commands (N, 3) of v, w, v_z: what can be replayed."""
+    """Return the ticks of a drive by commands (N, 3 or 4) of v, w, v_z, v_y: what can be replayed."""
     return [tick for tick, _ in ticks(model, commands)]
 
 
 def ticks(model: DescribedRobot, commands: Array) -> Iterator[tuple[Tick, KinematicRobot]]:
-    """Drive `model` by commands (N, 3) of v, w, v_z in the frame of the hand, from its start; yield each period."""
+    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start, by periods."""
     pilot, robot = Pilot(model, Exact(usual_blend(Exact().blend, model))), KinematicRobot(model)
     pilot.ask(ArmRequest(OPERATOR), 0.0)
-    for k, (v, w, v_z) in enumerate(commands.tolist()):
+    for k, (v, w, v_z, *aside) in enumerate(commands.tolist()):
         t = k * DT_S
-        command = Command(OPERATOR, k + 1, 1, True, Twist(v, 0.0, v_z, w_z=w), Frame.HAND, seen=t)
+        twist = Twist(v, aside[0] if aside else 0.0, v_z, w_z=w)
+        command = Command(OPERATOR, k + 1, 1, True, twist, Frame.HAND, seen=t)
         tick = pilot.tick(robot.read(t), command, t, DT_S)
         robot.write(tick.base, tick.joints, tick.gripper, t, t + DT_S)
         yield tick, robot
 
 
 def drive(model: DescribedRobot, commands: Array) -> Driven:
-    """Drive `model` by commands (N, 3) of v, w, v_z in the frame of the hand, from its start."""
+    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start."""
     many, n = len(commands), len(model.arm.channels)
     found = Driven(
         np.empty((many + 1, n)), np.empty((many + 1, 3)), np.empty((many, 3)), np.empty(many), np.empty(many),

@@ -4,6 +4,8 @@ smooth: each of v, w, v_z is tanh(x(t)), x = 0.8 a_0 + 0.6 sum a_k sin(2 pi t / 
 periods T_k uniform in 3 to 20 s and phases p_k; the first second fades in; then scaled so that it reaches full
 deflection exactly once or more. So a stream is at full deflection for much of its time, in all directions.
 
+A base that moves sideways too is also driven to the side: one more part, v_y, which is as great as v.
+
 steps: a stick thrown from stop to stop: each part holds for 0.3 to 3 s, and is -1, 0 or 1, or uniform in between.
 """
 
@@ -26,15 +28,18 @@ HOLDS_S = (0.3, 3.0)
 KINDS = ("smooth", "steps")
 
 
-def stream(kind: str, seed: int, number: int, most: Limits) -> Array:
-    """Return the commands (steps, 3) of stream `number` of a seed: v [m/s], w [rad/s], v_z [m/s], at most `most`."""
+def stream(kind: str, seed: int, number: int, most: Limits, aside: bool = False) -> Array:
+    """Return the commands (steps, 3) of stream `number` of a seed: v [m/s], w [rad/s], v_z [m/s], at most `most`.
+
+    aside: with v_y [m/s] as a fourth.
+    """
     if kind not in KINDS:
         raise UnknownNameError("kind of stream", kind, KINDS)
     random = np.random.default_rng((seed, number))
     t = np.arange(round(DURATION_S / DT_S)) * DT_S
     make = _smooth if kind == "smooth" else _steps
-    parts = [make(random, t) for _ in range(3)]
-    return np.stack([part * top for part, top in zip(parts, (most.v_c, most.w_c, most.v_z), strict=True)], axis=1)
+    tops = (most.v_c, most.w_c, most.v_z, *((most.v_c,) if aside else ()))
+    return np.stack([make(random, t) * top for top in tops], axis=1)
 
 
 def _smooth(random: np.random.Generator, t: Array) -> Array:

@@ -23,7 +23,7 @@ from overreach.types import Command, Frame
 
 ASKED_MOST = 8
 """How many questions of one page may wait for their answers."""
-NO_SCENE = Scene((0.0, 0.0), (), ())
+NO_SCENE = Scene((0.0, 0.0), (), (), ())
 SILENT_S = 1.0
 """After this long without a state [s] it is asked whether the robot side is another than before."""
 

@@ -17,6 +17,7 @@ class Bounds:
         each = channels(model)
         self._guard = guard
         self._joints: tuple[Channel, ...] = model.arm.channels
+        self._axes = model.base.axes
         self.tops = tuple(channel.rate_max for channel in each)
         """Greatest rate of each channel."""
         self._changes = tuple(channel.change_max for channel in each)
@@ -53,22 +54,22 @@ class Bounds:
         rates: of base and joints at scale 1; owed: the part of them that the joints owe the base at any scale;
         free: the joints' `room`.
         """
-        v_b, w_b, *joints = rates
+        axes = self._axes
+        joints = rates[axes:]
         fastest = [high if rate >= 0.0 else -low for rate, (low, high) in zip(joints, free, strict=True)]
-        commanded = (v_b, w_b, *[rate - own for rate, own in zip(joints, owed, strict=True)])
-        most = (*self.tops[:2], *fastest)
-        scale, verdict = feasible_scale(commanded, self._guard.written, most, self.steps, (0.0, 0.0, *owed))
+        commanded = (*rates[:axes], *[rate - own for rate, own in zip(joints, owed, strict=True)])
+        most = (*self.tops[:axes], *fastest)
+        scale, verdict = feasible_scale(commanded, self._guard.written, most, self.steps, (*(0.0,) * axes, *owed))
         if verdict is Verdict.SPEED and any(
             abs(rate) * scale >= top * 0.999 and top < usual * 0.999
-            for rate, top, usual in zip(joints, fastest, self.tops[2:], strict=True)
+            for rate, top, usual in zip(joints, fastest, self.tops[axes:], strict=True)
         ):
             verdict = Verdict.JOINT_LIMIT
         return scale, verdict
 
-    def base(self, v_b: float, w_b: float) -> tuple[float, float]:
+    def base(self, rates: tuple[float, ...]) -> tuple[float, ...]:
         """Return the base's rates, clamped to its acceleration limits."""
-        (was_v, was_w, *_), (dv, dw, *_) = self._guard.written, self.steps
-        return clamp_change(v_b, was_v, dv), clamp_change(w_b, was_w, dw)
+        return tuple(map(clamp_change, rates, self._guard.written, self.steps))
 
     def joints(self, rates: tuple[float, ...], free: Room) -> tuple[float, ...]:
         """Return joint rates clamped first to what can still stop in time, then to the acceleration limits."""
@@ -76,7 +77,7 @@ class Bounds:
             [
                 clamp_change(max(low, min(high, rate)), was, change)
                 for rate, (low, high), was, change in zip(
-                    rates, free, self._guard.written[2:], self.steps[2:], strict=True
+                    rates, free, self._guard.written[self._axes :], self.steps[self._axes :], strict=True
                 )
             ]
         )

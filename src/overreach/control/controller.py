@@ -20,7 +20,18 @@ from overreach.law.authority import arm_residual
 from overreach.law.body import Planner, UnusableError, WholeBody, checked
 from overreach.law.frame import FRAMES, heading_rate, meant
 from overreach.model.model import Model, channels
-from overreach.types import FLOATS, Decision, Frame, HandTwist, PolarState, RobotState, Split, Takeover, Twist
+from overreach.types import (
+    FLOATS,
+    BaseTwist,
+    Decision,
+    Frame,
+    HandTwist,
+    PolarState,
+    RobotState,
+    Split,
+    Takeover,
+    Twist,
+)
 from overreach.verdicts import Motion, Verdict, weightier
 
 NO_TWIST, NO_MOTION = Twist(), HandTwist()
@@ -42,7 +53,7 @@ class HandController:
     def __init__(self, model: Model, law: WholeBody, ramp_s: float = 0.0) -> None:
         self.model = model
         all_of_them = channels(model)
-        self._arm, self._mount = model.arm, model.mount.three
+        self._arm, self._mount, self._base = model.arm, model.mount.three, model.base
         self._still = (0.0,) * len(model.arm.channels)
         self._beyond = any(row > 1 for row in model.arm.rows)
         self._governs = governs(model.arm)
@@ -187,7 +198,10 @@ class HandController:
             pose, motion, q, dq = astuple(state.pose), astuple(state.motion), state.q, state.dq
             numbers = state.numbers
         x, y, _, q_w, q_x, q_y, q_z, yaw = pose
-        wrong = self._feedback.check(state.t, (complex(x, y), yaw, *q), (motion[0], motion[5], *dq), self._now)
+        where, rates = (complex(x, y), yaw, *q), (motion[0], motion[5], *dq)
+        if self._base.omni:
+            where, rates = (where[0], *where), (motion[0], motion[1], *rates[1:])
+        wrong = self._feedback.check(state.t, where, rates, self._now)
         if not wrong and not isfinite(sum(numbers)):
             wrong = "The robot's feedback of the base is not finite."
         elif not wrong and not -UNIT <= q_w * q_w + q_x * q_x + q_y * q_y + q_z * q_z - 1.0 <= UNIT:
@@ -204,46 +218,54 @@ class HandController:
         u = meant(self._angle, twist, l, psi + mount[2], state.pose.yaw, polar.theta_e)
         u_r, u_t = u.u_r, u.u_t
         is_ = state.motion
-        plan = checked(self._plan(chain, amid(u, 0.5 * self.guard.written[1] * dt) if self._governs else u, is_))
+        base = self._base
+        turning = self.guard.written[base.axes - 1] + self._governor.w_m
+        plan = checked(self._plan(chain, amid(u, 0.5 * turning * dt) if self._governs else u, is_))
         split, own = plan.split, plan.joints
+        if split.v_y is not None and not base.omni:
+            raise UnusableError(f"v_y = {split.v_y:g}, but the base cannot move sideways")
         if self._governs and own is None:
             self._shares = split.mu, split.sigma
-            slip = slipped(is_, self._feedback.asked.in_force) if closes else NO_TWIST
+            slip = slipped(is_, base.twist(self._feedback.asked.in_force)) if closes else NO_TWIST
             return self._governor.decide(cast(Governing, chain), state, polar, u, split, slip, dt)
         if own is not None and len(own) != len(self._still):
             raise UnusableError(f"{len(own)} joint rates for {len(self._still)} joints")
         full, verdict = split.scale, split.verdict
         if verdict is MOVING and full < 1.0:
             verdict = Verdict.BESIDE
-        v_b, w_b, v_m, w_m = split.v_b, split.w_b, split.v_m, split.w_m
+        v_b, v_y, w_b, v_m, w_m = split.v_b, split.v_y or 0.0, split.w_b, split.v_m, split.w_m
 
         # The base may not do what it was asked for: assume that it keeps deviating as it last did.
-        slip_v = slip_w = 0.0
+        slip_v = slip_y = slip_w = 0.0
         if closes:
-            then = self._feedback.asked.in_force
-            slip_v, slip_w = is_.v_x - then[0], is_.w_z - then[1]
-        open_ = closes and (slip_v != 0.0 or slip_w != 0.0 or self._lags)
+            then = base.twist(self._feedback.asked.in_force)
+            slip_v, slip_y, slip_w = is_.v_x - then.v_x, is_.v_y - then.v_y, is_.w_z - then.w_z
+        open_ = closes and (slip_v != 0.0 or slip_y != 0.0 or slip_w != 0.0 or self._lags)
         owed = self._still
         if open_:
-            v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, v_b + slip_v, w_b + slip_w, mount)
+            real = v_b + slip_v, w_b + slip_w, mount, v_y + slip_y
+            v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, *real)
             rest = (0.0, 0.0, 0.0, -slip_w)
-            owed = chain.rates(*arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount), rest, 0.0)[0]
+            owed = chain.rates(*arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount, slip_y), rest, 0.0)[0]
         if own is None:
             joints, short = chain.rates(v_m, w_m, self._rest_of(u, full, w_b + slip_w), dt)
         else:
             joints, short = tuple(map(add, own, owed)), MOVING
 
-        scale, free, bounds = 1.0, None, self._bounds
-        if not bounds.keep((v_b, w_b, *joints), state.q, dt):
+        scale, free, bounds, changed = 1.0, None, self._bounds, False
+        wanted = base.rates(BaseTwist(v_b, v_y, w_b))
+        if not bounds.keep((*wanted, *joints), state.q, dt):
             free = bounds.room(state.q, dt)
-            scale, why = bounds.scale((v_b, w_b, *joints), owed, free)
+            scale, why = bounds.scale((*wanted, *joints), owed, free)
             if why is not MOVING:
                 verdict = why
-            v_b, w_b = bounds.base(v_b * scale, w_b * scale)
-        if scale != 1.0 or (closes and (v_b != split.v_b or w_b != split.w_b)):
+            kept = bounds.base(tuple([rate * scale for rate in wanted]))
+            changed = kept != wanted
+            v_b, v_y, w_b = astuple(base.twist(kept))
+        if scale != 1.0 or (closes and changed):
             if closes:
-                k = full * scale
-                v_m, w_m = arm_residual(l, psi, u_r * k, u_t * k, v_b + slip_v, w_b + slip_w, mount)
+                k, real = full * scale, (v_b + slip_v, w_b + slip_w, mount, v_y + slip_y)
+                v_m, w_m = arm_residual(l, psi, u_r * k, u_t * k, *real)
             else:
                 v_m, w_m = v_m * scale, w_m * scale
             if own is None:
@@ -257,7 +279,8 @@ class HandController:
             joints = bounded
             v_m, w_m, *_ = chain.moved(joints)  # what these joint rates really do
         self._shares = split.mu, split.sigma
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict)
+        aside = v_y if base.omni else None
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, aside)
         return Decision(state, polar, u, applied, joints, full * scale, verdict)
 
     def _rest_of(self, u: HandTwist, scale: float, w_b: float) -> Rest:
@@ -276,19 +299,21 @@ class HandController:
 
     def _written(self, decision: Decision, chain: Chain, rates: tuple[float, ...]) -> Decision:
         """Return `decision` with other rates."""
-        v_b, w_b, *dtheta = rates
+        base = self._base.twist(rates)
+        dtheta = rates[self._base.axes :]
         try:
-            v_m, w_m, *_ = chain.moved(tuple(dtheta))
+            v_m, w_m, *_ = chain.moved(dtheta)
         except Exception as error:  # it is only told: what is written stands
             self.guard.latch(f"The arm's kinematics raised {told(error)}.")
             v_m = w_m = 0.0
-        split = _with(decision.split, v_b=v_b, w_b=w_b, v_m=v_m, w_m=w_m)
-        return _with(decision, split=split, joints=tuple(dtheta))
+        aside = base.v_y if self._base.omni else None
+        split = _with(decision.split, v_b=base.v_x, w_b=base.w_z, v_m=v_m, w_m=w_m, v_y=aside)
+        return _with(decision, split=split, joints=dtheta)
 
     def _at_rest(self, chain: Chain, state: RobotState) -> Decision:
         """Return a decision in which nothing moves."""
         self._governor.rest()
-        rest = Split(*self._shares, 0.0, 0.0, 0.0, 0.0)
+        rest = Split(*self._shares, 0.0, 0.0, 0.0, 0.0, v_y=0.0 if self._base.omni else None)
         return Decision(state, self._located(chain, state), NO_MOTION, rest, self._still, 1.0, MOVING)
 
     def _asks(self, motion: Motion) -> bool:

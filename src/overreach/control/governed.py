@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import final
 
 import msgspec
@@ -11,25 +12,37 @@ from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
 from overreach.gate.guard import Guard
 from overreach.law.blend import rise_smoothstep
+from overreach.model.base import Base
 from overreach.model.model import Model
 from overreach.model.workspace import Workspace
-from overreach.types import Decision, HandTwist, PolarState, RobotState, Split, Twist
+from overreach.types import BaseTwist, Decision, HandTwist, PolarState, RobotState, Split, Twist
 from overreach.verdicts import Verdict
 
 HELD_BACK = 0.5
 """The hand is said to be at its height where less than this part of the upward command is left."""
 
 
-def slipped(is_: Twist, asked: tuple[float, ...]) -> Twist:
-    """Return how a base that moves at `is_` deviates from the rates that it was asked for."""
-    return Twist(is_.v_x - asked[0], is_.v_y, w_z=is_.w_z - asked[1])
+def slipped(is_: Twist, asked: BaseTwist) -> Twist:
+    """Return how a base that moves at `is_` deviates from the twist that it was asked for."""
+    return Twist(is_.v_x - asked.v_x, is_.v_y - asked.v_y, w_z=is_.w_z - asked.w_z)
+
+
+def of_tops(base: Base, split: Split) -> float:
+    """Return how many times its greatest speed or turning a base is to go."""
+    along = abs(split.v_b) if split.v_y is None else math.hypot(split.v_b, split.v_y)
+    return max(along / base.v_max, abs(split.w_b) / base.w_max)
+
+
+def _three(base: Base, rates: tuple[float, ...]) -> tuple[float, float, float]:
+    """Return the base's part of a robot's rates, or of their changes, as v_x, v_y, w_z."""
+    return (rates[0], rates[1], rates[2]) if base.omni else (rates[0], 0.0, rates[1])
 
 
 def amid(u: HandTwist, turn: float) -> HandTwist:
-    """Return `u` as a base sees it that has turned by `turn` [rad], half of what it will in a period.
+    """Return `u` along the axes at a hand whose bearing in the world has turned by `turn` [rad], half of a period's.
 
     A base that is asked for the twist of the period's beginning leaves the hand behind by its curvature, a little each
-    period: where it carries the hand alone, the hand would creep out of the workspace.
+    period: where it carries the hand, the hand would creep out of the workspace.
     """
     return msgspec.structs.replace(u, u_r=u.u_r + turn * u.u_t, u_t=u.u_t - turn * u.u_r)
 
@@ -49,16 +62,20 @@ class Governor:
         self.model = model
         self._bounds, self._guard = bounds, guard
         self._heading: float | None = None
+        self.w_m = 0.0
+        """How fast the arm turns the hand's bearing [rad/s], as it was decided last."""
 
     def rest(self) -> None:
         """Forget the heading: the next motion begins with the one that the hand has then."""
         self._heading = None
+        self.w_m = 0.0
 
     def decide(
         self, chain: Governing, state: RobotState, polar: PolarState, u: HandTwist, split: Split, slip: Twist, dt: float
     ) -> Decision:
         """Decide for a law's split of `u` at full scale; slip: how the base deviates from what it is asked."""
         bounds, model, written = self._bounds, self.model, self._guard.written
+        at = model.base
         bounds.prepare(dt)
         u_z = within_height(u, chain.hand[2], model.workspace, model.bands[2]) if u.u_z != 0.0 else 0.0
         at_height = abs(u_z) < HELD_BACK * abs(u.u_z)
@@ -67,8 +84,7 @@ class Governor:
         bearing = state.pose.yaw + polar.psi + model.mount.yaw
         if self._heading is None:
             self._heading = bearing + chain.heading
-        tops, steps = bounds.tops, bounds.steps
-        worst = max(abs(split.v_b) / tops[0], abs(split.w_b) / tops[1])
+        worst = of_tops(at, split)
         fast = 1.0 if worst <= 1.0 else 1.0 / worst
         scale = split.scale * fast
         step = chain.step(
@@ -76,11 +92,11 @@ class Governor:
                 u=(scale * u.u_r, scale * u.u_t, scale * u.u_z),
                 w_c=scale * u.w_z,
                 delta=wrap(self._heading - bearing),
-                plan=(split.v_b * fast, 0.0, split.w_b * fast),
+                plan=(split.v_b * fast, (split.v_y or 0.0) * fast, split.w_b * fast),
                 slip=(slip.v_x, slip.v_y, slip.w_z),
-                was=(written[0], 0.0, written[1]),
-                change=(steps[0], 0.0, steps[1]),
-                joints=written[2:],
+                was=_three(at, written),
+                change=_three(at, bounds.steps),
+                joints=written[at.axes :],
                 dt=dt,
             )
         )
@@ -94,7 +110,9 @@ class Governor:
                 verdict = Verdict.SPEED if fast < 1.0 else Verdict.BESIDE
             elif at_height:
                 verdict = Verdict.HEIGHT
-        v_b, _, w_b = step.base
+        v_b, v_y, w_b = step.base
         v_m, w_m, *_ = chain.moved(step.joints)
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale, split.verdict)
+        self.w_m = w_m
+        aside = v_y if at.omni else None
+        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale, split.verdict, aside)
         return Decision(state, polar, u, applied, step.joints, scale, verdict, reason=step.reason)

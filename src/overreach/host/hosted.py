@@ -130,7 +130,7 @@ class Hosted:
         self, base: BaseTwist, joints: tuple[float, ...], gripper: float | None, now: float, deadline: float
     ) -> None:
         """Ask for rates that are good until `deadline` [s]. Raises RobotFault if an earlier write has failed."""
-        self._say(now=now, due=deadline, rates=(base.v_x, base.w_z, *joints), gripper=gripper)
+        self._say(now=now, due=deadline, rates=(*self.model.base.rates(base), *joints), gripper=gripper)
         if self._report.failed:
             raise RobotFault(self._report.failed)
 

@@ -16,7 +16,7 @@ from overreach.host.mailbox import Mailbox
 from overreach.host.records import Ask, Report, decode_ask, encode
 from overreach.model.model import channels
 from overreach.robots.base import Robot, sentence
-from overreach.types import BaseTwist, RobotState
+from overreach.types import RobotState
 
 AHEAD_S = 0.0005
 """The robot is read this long [s] before the loop wants to know ..."""
@@ -88,9 +88,9 @@ class Host:
             self._look = now
 
     def _write(self, rates: Rates, now: float, due: float) -> None:
-        v_x, w_z, *joints = rates
+        base = self._robot.model.base
         try:
-            self._robot.write(BaseTwist(v_x, 0.0, w_z), tuple(joints), self._gripper, now, due)
+            self._robot.write(base.twist(rates), rates[base.axes :], self._gripper, now, due)
             self._unwritable = ""
         except Exception as error:
             self._unwritable = sentence("written to", error)

@@ -1,4 +1,4 @@
-"""The sharing laws as pure functions of floats: `paper` (and with a step blend `switch`), `exact`.
+"""The sharing laws as pure functions of floats: `paper` (and with a step blend `switch`), `exact`, `omni`.
 
 Each takes the EE's position about the shoulder (l [m], psi [rad], from the arm's x axis), its
 commanded velocity in polar components in the base frame (u_r outward, u_t counter-clockwise
@@ -155,6 +155,38 @@ def exact(
     return mu, sigma, v_b, w_b, u_r - c * v_b - k_r * w_b, (d - k_t * w_b) / l, scale
 
 
+def omni(
+    l: float,
+    psi: float,
+    u_r: float,
+    u_t: float,
+    w_c: float,
+    rise: Rise,
+    limits: Limits6,
+    mount: Mount3,
+) -> tuple[float, float, float, float, float, float, float]:
+    """Share with a base that moves sideways too: its part of the motion is the part that is commanded, itself.
+
+    Return (mu, sigma, v_x, v_y, w_b, v_m, w_m), for a command that turns the hand at w_c [rad/s]:
+        w_b = sigma w_c,   (v_x, v_y) + w_b z x p = mu u_r r + sigma u_t t
+        v_m = (1 - mu) u_r,   w_m = (1 - sigma) u_t/l
+    with p the hand in the base frame. Bands are kept exactly, and the whole command is carried out.
+    Source: this project, with the shares of Kwon et al. 2026.
+    """
+    l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
+    s_x, s_y, yaw = mount
+    c = cos(psi + yaw)
+    sn = sin(psi + yaw)
+    mu = rise(l - l_max, k_l) if u_r >= 0.0 else rise(l_min - l, k_l)
+    sigma = rise(psi - psi_max, k_psi) if u_t >= 0.0 else rise(psi_min - psi, k_psi)
+    out = mu * u_r
+    along = sigma * u_t
+    w_b = sigma * w_c
+    v_x = out * c - along * sn + w_b * (s_y + l * sn)
+    v_y = out * sn + along * c - w_b * (s_x + l * c)
+    return mu, sigma, v_x, v_y, w_b, (1.0 - mu) * u_r, (1.0 - sigma) * u_t / l
+
+
 def ee_velocity(
     l: float,
     psi: float,
@@ -163,17 +195,18 @@ def ee_velocity(
     v_m: float,
     w_m: float,
     mount: Mount3,
+    v_y: float = 0.0,
 ) -> tuple[float, float]:
     """Return the EE's true rigid-body velocity (radial, tangential) [m/s], in the base frame's axes.
 
-    u_r = v_b cos psi_d + w_b k_r + v_m,   u_t = -v_b sin psi_d + w_b k_t + l w_m
+    u_r = v_b cos psi_d + v_y sin psi_d + w_b k_r + v_m,   u_t = -v_b sin psi_d + v_y cos psi_d + w_b k_t + l w_m
     """
     s_x, s_y, yaw = mount
     c = cos(psi + yaw)
     sn = sin(psi + yaw)
     return (
-        v_b * c + w_b * (s_x * sn - s_y * c) + v_m,
-        -v_b * sn + w_b * (l + s_x * c + s_y * sn) + l * w_m,
+        v_b * c + v_y * sn + w_b * (s_x * sn - s_y * c) + v_m,
+        -v_b * sn + v_y * c + w_b * (l + s_x * c + s_y * sn) + l * w_m,
     )
 
 
@@ -185,10 +218,11 @@ def arm_residual(
     v_b: float,
     w_b: float,
     mount: Mount3,
+    v_y: float = 0.0,
 ) -> tuple[float, float]:
     """Return (v_m [m/s], w_m [rad/s]): what the arm must do so that the EE moves at (u_r, u_t).
 
-    (v_b, w_b) is the base twist that is really happening: the base may lag, slip or be limited.
+    (v_b, w_b), and v_y to its left, is the base twist that is really happening: the base may lag, slip or be limited.
     """
-    b_r, b_t = ee_velocity(l, psi, v_b, w_b, 0.0, 0.0, mount)
+    b_r, b_t = ee_velocity(l, psi, v_b, w_b, 0.0, 0.0, mount, v_y)
     return u_r - b_r, (u_t - b_t) / l

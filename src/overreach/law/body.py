@@ -50,9 +50,10 @@ def checked(plan: Plan) -> Plan:
     """
     split = plan.split
     own = () if plan.joints is None else tuple(plan.joints)
-    numbers = (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale, *own)
+    aside = () if split.v_y is None else (split.v_y,)
+    numbers = (split.mu, split.sigma, split.v_b, split.w_b, split.v_m, split.w_m, split.scale, *aside, *own)
     if not (math.isfinite(sum(map(abs, numbers))) and 0.0 <= split.scale <= 1.0):
-        for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m"):
+        for name in ("mu", "sigma", "scale", "v_b", "w_b", "v_m", "w_m", *(("v_y",) if aside else ())):
             value = getattr(split, name)
             if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
                 raise UnusableError(f"{name} = {value}")
@@ -62,5 +63,6 @@ def checked(plan: Plan) -> Plan:
     if set(map(type, numbers)) == FLOATS and (plan.joints is None or own is plan.joints):
         return plan
     mu, sigma, v_b, w_b, v_m, w_m, scale, *joints = map(float, numbers)
-    made = Split(mu, sigma, v_b, w_b, v_m, w_m, scale, split.verdict)
+    v_y = joints.pop(0) if aside else None
+    made = Split(mu, sigma, v_b, w_b, v_m, w_m, scale, split.verdict, v_y)
     return Plan(made, None if plan.joints is None else tuple(joints))

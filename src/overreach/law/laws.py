@@ -36,7 +36,8 @@ class Law(WholeBody, frozen=True):
             return Plan(share(chain.l, chain.psi, u.u_r, u.u_t))
 
         def plan_ahead(chain: Chain, u: HandTwist, base: Twist) -> Plan:
-            return Plan(share(*lead(chain.l, chain.psi, u.u_r, u.u_t, base.v_x, base.w_z, lag, mount)))
+            ahead = lead(chain.l, chain.psi, u.u_r, u.u_t, base.v_x, base.w_z, lag, mount, base.v_y)
+            return Plan(share(*ahead))
 
         return plan_ahead if lag > 0.0 and self.closes_residual else plan
 
@@ -69,14 +70,48 @@ def bound(shares: Callable[..., authority.Shares], model: Model, blend: Blend) -
 
 
 class Exact(Law, frozen=True):
-    """Ours: exact in true kinematics, the arm closes what the base leaves, the base lines up."""
+    """Ours: exact in true kinematics, the arm closes what the base leaves, the base lines up.
+
+    A base that moves sideways too needs not line up: it carries its share of the command itself.
+    """
 
     name = "exact"
     blend: Blend = Smoothstep()
 
     def bind(self, model: Model) -> Share:
-        """Return `authority.exact` for `model`."""
-        return bound(authority.exact, model, self.blend)
+        """Return `authority.exact` for `model`; of `authority.omni`, where the base is omni, for a hand that only goes.
+
+        `planner` gives the base its part of the turning as well.
+        """
+        if not model.base.omni:
+            return bound(authority.exact, model, self.blend)
+        turning = self._turning(model)
+        return lambda l, psi, u_r, u_t: turning(l, psi, u_r, u_t, 0.0)
+
+    def _turning(self, model: Model) -> Callable[[float, float, float, float, float], Split]:
+        rise = self.blend.rise
+        limits, mount = constants(model, self.blend)
+
+        def share(l: float, psi: float, u_r: float, u_t: float, w_c: float) -> Split:
+            mu, sigma, v_x, v_y, w_b, v_m, w_m = authority.omni(l, psi, u_r, u_t, w_c, rise, limits, mount)
+            return Split(mu, sigma, v_x, w_b, v_m, w_m, v_y=v_y)
+
+        return share
+
+    def planner(self, model: Model) -> Planner:
+        """As of any law; of a base that moves sideways too with the turning that is commanded."""
+        if not model.base.omni:
+            return super().planner(model)
+        share = self._turning(model)
+        lag, mount = model.base.lag, model.mount.three
+
+        def plan(chain: Chain, u: HandTwist, base: Twist) -> Plan:
+            l, psi, u_r, u_t = chain.l, chain.psi, u.u_r, u.u_t
+            if lag > 0.0:
+                l, psi, u_r, u_t = lead(l, psi, u_r, u_t, base.v_x, base.w_z, lag, mount, base.v_y)
+            return Plan(share(l, psi, u_r, u_t, u.w_z))
+
+        return plan
 
 
 class Paper(Law, frozen=True):

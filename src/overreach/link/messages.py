@@ -17,12 +17,13 @@ import msgspec
 from overreach.arm.chain import Point
 from overreach.errors import SetupError
 from overreach.gate.limits import Limits
+from overreach.model.base import Wheel
 from overreach.model.workspace import Workspace
 from overreach.parameters import Parameter
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
 from overreach.types import BaseTwist, Command, Frame, Pose, Record, Twist
 
-PROTOCOL = 5
+PROTOCOL = 6
 """Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
 
 LONGEST = 4096
@@ -77,10 +78,12 @@ class Plug(Record, frozen=True):
 class Scene(Record, frozen=True):
     """What is drawn around the base: closed lines through (x, y) [m] in the base frame.
 
-    footprint: length and width of the base [m]; workspace: where the arm works alone; bands: where base and arm blend.
+    footprint: length and width of the base [m]; wheels: x, y [m], the way it rolls [rad] and radius [m] of each that
+    drives it; workspace: where the arm works alone; bands: where base and arm blend.
     """
 
     footprint: tuple[float, float]
+    wheels: tuple[Wheel, ...]
     workspace: tuple[tuple[float, float], ...]
     bands: tuple[tuple[tuple[float, float], ...], ...]
 

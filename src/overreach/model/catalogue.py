@@ -138,7 +138,7 @@ def robot_of(parts: Parts, mode: str, found: Measured) -> DescribedRobot:
     manner = msgspec.structs.replace(parts.arm.manner, yaw=found.yaw)
     arm = SpatialArm(parts.arm.channels, parts.arm.screws, parts.arm.tip, parts.arm.home, manner)
     description = parts.description
-    command = command_of(description.command, fastest(manner.reach, found.sigma, found.p_x, parts.base))
+    command = command_of(description.command, fastest(manner.reach, found.sigma, found.p_x, parts.base, parts.mount))
     space = Workspace(*found.l, *found.psi, *found.z, edges=True)
     gripper = bool(description.hand.gripper)
     return DescribedRobot(

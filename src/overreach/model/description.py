@@ -2,7 +2,8 @@
 
 name, summary     the name under which it is chosen, and one line about it
 model             the model file: a path from the TOML, "menagerie:ROBOT/ENTRY", or "builtin:NAME"
-[base]            kind "differential", body; v_max, w_max, dv_max, dw_max, lag; footprint (length, width)
+[base]            kind "differential" or "omni", body, wheels; v_max, w_max, dv_max, dw_max, lag; footprint
+                  (length, width)
 [arm]             joints, each a name or several that move together; speed, acceleration of each
 [hand]            body, offset in it [m], approach axis in it; gripper: its joints, if any
 [locked]          joints of the model that stay where they are, with their places: NAME = value
@@ -25,6 +26,8 @@ from overreach.types import Record
 
 MODES = ("follow", "fixed", "level", "free")
 """How the hand is held: its yaw follows the bearing; is fixed in the world; is free, with the hand level; all free."""
+KINDS = ("differential", "omni")
+"""How a base moves: driving and turning; sideways as well."""
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
 
@@ -126,8 +129,8 @@ class Description(Record, frozen=True):
         for home in (self.home, *self.homes.values()):
             if len(home) != joints or not all(map(math.isfinite, home)):
                 raise SetupError(f"home must be a number for each of the {joints} joints, got {list(home)}")
-        if self.base.kind != "differential":
-            raise SetupError(f'base.kind must be "differential", got {self.base.kind!r}')
+        if self.base.kind not in KINDS:
+            raise UnknownNameError("base.kind", self.base.kind, KINDS)
         for mode in (*self.workspace, *self.homes):
             check_mode(mode)
 

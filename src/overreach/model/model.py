@@ -85,7 +85,8 @@ def check_workspace(model: Model, workspace: Workspace) -> None:
             f"the workspace's l = {workspace.l_min:g} to {workspace.l_max:g} m is not within "
             f"the arm's reach of {least:g} to {most:g} m"
         )
-    _check_centre(workspace, model.mount)
+    if not model.base.omni:
+        _check_centre(workspace, model.mount)
 
 
 def check_reach(model: Model, l: float) -> None:

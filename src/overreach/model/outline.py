@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import ceil, cos, pi, sin
 
 from overreach.arm.mount import Mount
+from overreach.model.base import Base, Wheel
 from overreach.model.model import Model
 
 Outline = tuple[tuple[float, float], ...]
@@ -51,3 +52,13 @@ def bands(model: Model, width_l: float, width_psi: float) -> tuple[Outline, ...]
         (l_min + q, l_max - q, psi_min - p, psi_min + p),
     )
     return tuple(sector(model.mount, *part) for part in parts if part[1] > part[0] and part[3] > part[2])
+
+
+def wheels(base: Base) -> tuple[Wheel, ...]:
+    """Return the wheels of a base; where they are not known, one at each side of a footprint that it drives between."""
+    length, width = base.footprint
+    return base.wheels or tuple(Wheel(0.0, side * 0.5 * width, 0.0, USUAL * length) for side in (1.0, -1.0))
+
+
+USUAL = 0.17
+"""Radius of a wheel, in parts of the footprint's length."""

@@ -17,7 +17,7 @@ from overreach.law.body import Planner, WholeBody
 from overreach.law.laws import usual_blend
 from overreach.link.messages import Choice, Plug, Scene, Settings, encode
 from overreach.model.model import Model, check_workspace
-from overreach.model.outline import bands, workspace
+from overreach.model.outline import bands, wheels, workspace
 from overreach.parameters import Parameters, schema, summary
 from overreach.plugs import BLENDS, blend_plug, blends_in, law_names, law_plug, load_blend, load_law, names, usable
 from overreach.types import Frame, Record
@@ -59,7 +59,8 @@ def build(settings: Settings, model: Model) -> Built:
     blend = load_blend(settings.blend.name, settings.blend.parameters)
     law = load_law(settings.law.name, settings.law.parameters, blend)
     drawn: Blend = getattr(law, "blend", Step())
-    scene = Scene(model.base.footprint, workspace(placed_model), bands(placed_model, drawn.width_l, drawn.width_psi))
+    edges = bands(placed_model, drawn.width_l, drawn.width_psi)
+    scene = Scene(model.base.footprint, wheels(model.base), workspace(placed_model), edges)
     encode(scene)  # what cannot be sent is told now
     settings = msgspec.structs.replace(settings, law=_read(settings.law, law), blend=_read(settings.blend, blend))
     return Built(settings, law, placed_model, law.planner(placed_model), scene)

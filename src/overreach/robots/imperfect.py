@@ -49,10 +49,10 @@ class Imperfection(Record, frozen=True):
         """Say whether every request takes effect at once and is measured exactly."""
         return _but_the_seed(self) == IDEAL
 
-    def lags(self, channels: int) -> tuple[float, ...]:
-        """Return the time constant of each channel [s]; the first two are the base's."""
+    def lags(self, channels: int, axes: int) -> tuple[float, ...]:
+        """Return the time constant of each channel [s]; the first `axes` are the base's."""
         base = self.lag_s if self.base_lag_s is None else self.base_lag_s
-        return (base, base, *(self.lag_s,) * (channels - 2))
+        return (*(base,) * axes, *(self.lag_s,) * (channels - axes))
 
 
 def _but_the_seed(imperfection: Imperfection) -> tuple[object, ...]:
@@ -70,14 +70,14 @@ IDEAL = _but_the_seed(Imperfection())
 
 @final
 class Actuators:
-    """Rates asked for -> actual rates, for any number of channels; the first is the base's speed."""
+    """Rates asked for -> actual rates, for any number of channels; the first `axes` are the base's, turning last."""
 
-    def __init__(self, channels: int, imperfection: Imperfection) -> None:
+    def __init__(self, channels: int, imperfection: Imperfection, axes: int = 2) -> None:
         self._delay = imperfection.delay_s
-        self._lags = imperfection.lags(channels)
+        self._lags = imperfection.lags(channels, axes)
         self._lagging = any(self._lags)
         forward, turning = imperfection.dead_band
-        self._dead = (forward, *(turning,) * (channels - 1))
+        self._dead = (*(forward,) * (axes - 1), *(turning,) * (channels - axes + 1))
         self._gain = imperfection.gain
         self._queue: deque[tuple[float, tuple[float, ...]]] = deque()
         self._target = (0.0,) * channels
@@ -132,9 +132,10 @@ class Actuators:
 
 @final
 class Sensors:
-    """True states -> reported states: noisy, periodic, late."""
+    """True states -> reported states: noisy, periodic, late. omni: whether the base's sideways rate is measured."""
 
-    def __init__(self, imperfection: Imperfection, now: float) -> None:
+    def __init__(self, imperfection: Imperfection, now: float, omni: bool = False) -> None:
+        self._omni = omni
         self._noise = imperfection.noise
         self._rate_noise = imperfection.rate_noise
         self._random = random.Random(imperfection.seed)
@@ -176,6 +177,7 @@ class Sensors:
             motion=msgspec.structs.replace(
                 state.motion,
                 v_x=self._with_noise((state.v_b,), self._rate_noise)[0],
+                v_y=self._with_noise((state.motion.v_y,), self._rate_noise)[0] if self._omni else state.motion.v_y,
                 w_z=self._with_noise((state.w_b,), self._rate_noise)[0],
             ),
         )

@@ -8,7 +8,7 @@ from overreach.model.model import Model, channels, check_reach
 from overreach.plugs import USUAL_MODEL, load_model
 from overreach.robots.arc import arc
 from overreach.robots.imperfect import Actuators, Imperfection, Sensors
-from overreach.types import BaseTwist, RobotState
+from overreach.types import BaseTwist, Pose, RobotState, Twist
 
 LONGEST_PIECE = 0.005
 """A lagging base turns while its twist changes: it is integrated in pieces of at most this [s]."""
@@ -43,17 +43,19 @@ class KinematicRobot:
         self._pose = (0.0, 0.0, 0.0)
         self._joints = self.model.arm.channels
         self._theta = self.model.arm.posture(self._l, self._psi)
-        self._actuators = Actuators(len(channels(self.model)), self._imperfection)
+        self._actuators = Actuators(len(channels(self.model)), self._imperfection, self.model.base.axes)
         self._now = now
         self._gripper = 0.0
-        self._sensors = Sensors(self._imperfection, now)
+        self._sensors = Sensors(self._imperfection, now, self.model.base.omni)
         self._sensors.see(self.true)
 
     @property
     def true(self) -> RobotState:
         """The state at the time of the last call, without noise."""
-        v_b, w_b, *dtheta = self._actuators.happening
-        return RobotState.flat(self._now, *self._pose, v_b, w_b, self._theta, tuple(dtheta), self._gripper)
+        rates, base = self._actuators.happening, self.model.base
+        twist, dq = base.twist(rates), rates[base.axes :]
+        motion = Twist(twist.v_x, twist.v_y, w_z=twist.w_z)
+        return RobotState(self._now, Pose.flat(*self._pose), motion, self._theta, dq, self._gripper)
 
     def read(self, now: float) -> RobotState:
         """Return the measured state at `now` [s]."""
@@ -65,7 +67,7 @@ class KinematicRobot:
     ) -> None:
         """Ask for a base twist and joint rates from `now` on; they hold, past the deadline too."""
         self._move_to(now)
-        self._actuators.ask((base.v_x, base.w_z, *joints), now)
+        self._actuators.ask((*self.model.base.rates(base), *joints), now)
         if gripper is not None:
             self._gripper = max(0.0, min(1.0, gripper))
 
@@ -83,8 +85,9 @@ class KinematicRobot:
                 until = min(until, self._now + LONGEST_PIECE)
             until = self._sensors.due(until)
             dt = until - self._now
-            v_b, w_b, *dtheta = self._actuators.advance(dt)
-            self._pose = arc(*self._pose, v_b, w_b, dt)
+            rates, base = self._actuators.advance(dt), self.model.base
+            twist, dtheta = base.twist(rates), rates[base.axes :]
+            self._pose = arc(*self._pose, twist.v_x, twist.w_z, dt, twist.v_y)
             self._theta = tuple(
                 [
                     min(joint.upper, max(joint.lower, angle + rate * dt))

@@ -102,6 +102,14 @@ def manipulability_min(rows: Sequence[Row], model: Model) -> float:
     return min(model.arm.at(row.theta, model.mount).manipulability for row in rows)
 
 
+def base_speeds(rows: Sequence[Row], model: Model, dt: float) -> list[float]:
+    """Return the base's speed [m/s] at each row: forward, of one that moves sideways too along its way."""
+    if not model.base.omni:
+        return [row.v_b for row in rows]
+    ways = [hypot(b.x_b - a.x_b, b.y_b - a.y_b) / dt for a, b in pairwise(rows)]
+    return [*ways, *ways[-1:]] or [0.0]
+
+
 def saturated(rates: Iterable[tuple[float, ...]], most: tuple[float, ...]) -> float:
     """Return the part of the steps in which at least one rate is at its limit (within 1e-6 of it)."""
     held = [any(abs(rate) >= top * (1.0 - 1e-6) for rate, top in zip(step, most, strict=True)) for step in rates]

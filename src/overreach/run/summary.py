@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from overreach.law.blend import Step
 from overreach.law.body import WholeBody
-from overreach.model.model import channels
 from overreach.run import metrics
 from overreach.run.row import Row
 from overreach.run.scenario import Scenario
@@ -59,7 +58,7 @@ def summarise(
 ) -> Summary:
     """Return the summary of a run."""
     dt, model = scenario.dt, scenario.model
-    v_b, w_b = [row.v_b for row in rows], [row.w_b for row in rows]
+    v_b, w_b = metrics.base_speeds(rows, model, dt), [row.w_b for row in rows]
     joints = [metrics.slopes(angles, dt) for angles in zip(*[row.theta for row in rows], strict=True)]
     beyond_l, beyond_psi = metrics.beyond(rows, model.workspace)
     changes = metrics.authority_changes(rows)
@@ -85,7 +84,7 @@ def summarise(
         variation_w_b=metrics.total_variation(w_b),
         saturated=metrics.saturated(
             zip(v_b[:-1], w_b[:-1], *joints, strict=True) if joints[0] else [(v_b[0], w_b[0], *[0.0] * len(joints))],
-            tuple(channel.rate_max for channel in channels(model)),
+            (model.base.v_max, model.base.w_max, *[channel.rate_max for channel in model.arm.channels]),
         ),
         authority_changes=changes,
         flips_per_s=changes / duration,

@@ -11,7 +11,7 @@ from overreach.model.model import Model
 from overreach.types import Split
 from overreach.verdicts import Verdict
 
-RATES = ("v_b", "w_b", "v_m", "w_m")
+RATES = ("v_b", "v_y", "w_b", "v_m", "w_m")
 EXACT_TO = 1e-9
 """How exact [m/s] a law that says it closes the residual must be, for commands up to 0.4 m/s."""
 
@@ -40,6 +40,7 @@ def check_law(law: Law, model: Model, seed: int = 0, cases: int = 500) -> None:
         case = (l, psi, chance.uniform(-size, size), chance.uniform(-size, size))
         split = share(*case)
         _check_split(split, case)
+        assert split.v_y is None or model.base.omni, f"moves a base sideways that cannot, at {case}: {split}"
         if law.closes_residual and size == 0.4:
             _check_exact(model, split, case)
         rest = share(l, psi, 0.0, 0.0)
@@ -52,7 +53,7 @@ def check_law(law: Law, model: Model, seed: int = 0, cases: int = 500) -> None:
 
 
 def _check_split(split: Split, case: tuple[float, ...]) -> None:
-    assert all(math.isfinite(getattr(split, rate)) for rate in RATES), f"not finite at {case}: {split}"
+    assert all(math.isfinite(getattr(split, rate) or 0.0) for rate in RATES), f"not finite at {case}: {split}"
     for share in ("mu", "sigma", "scale"):
         assert 0.0 <= getattr(split, share) <= 1.0, f"{share} is not in [0, 1] at {case}: {split}"
     if split.verdict is not Verdict.MOVING:
@@ -62,6 +63,7 @@ def _check_split(split: Split, case: tuple[float, ...]) -> None:
 
 def _check_exact(model: Model, split: Split, case: tuple[float, float, float, float]) -> None:
     l, psi, u_r, u_t = case
-    got_r, got_t = ee_velocity(l, psi, split.v_b, split.w_b, split.v_m, split.w_m, model.mount.three)
+    rates = split.v_b, split.w_b, split.v_m, split.w_m
+    got_r, got_t = ee_velocity(l, psi, *rates, model.mount.three, split.v_y or 0.0)
     off = math.hypot(got_r - split.scale * u_r, got_t - split.scale * u_t)
     assert off <= EXACT_TO, f"the hand is {off:.2g} m/s off its command at {case}: {split}"

@@ -44,32 +44,32 @@ def check_robot(
     assert len({channel.name for channel in each}) == len(each), "two channels have one name"
     first = _read(robot, clock, None)
     robot.arm(clock.now())
-    assert max(map(abs, _rates(first)), default=0.0) <= STILL, f"moves before it is asked to: {first}"
+    assert max(map(abs, _rates(robot, first)), default=0.0) <= STILL, f"moves before it is asked to: {first}"
     last = first
     for k, channel in enumerate(each):
         for sign in (1.0, -1.0):
             wanted = [0.0] * len(each)
             wanted[k] = sign * PART * channel.rate_max
-            begin = _positions(last)[k]
+            begin = _positions(robot, last)[k]
             last = _drive(robot, clock, wanted, period, settles_s, last)
-            _check_rates(last, wanted, [one.name for one in each])
-            way = _positions(last)[k] - begin
+            _check_rates(robot, last, wanted, [one.name for one in each])
+            way = _positions(robot, last)[k] - begin
             assert way * sign > 0.0, f"{channel.moves} goes the wrong way: {way:+.3g} at {wanted[k]:+.3g}"
             # A request holds: for one more period nothing is written.
             clock.sleep_until(clock.now() + period)
             last = _read(robot, clock, last)
-            _check_rates(last, wanted, [one.name for one in each])
+            _check_rates(robot, last, wanted, [one.name for one in each])
             last = _drive(robot, clock, [0.0] * len(each), period, settles_s, last)
-            assert max(map(abs, _rates(last))) <= STILL, f"{channel.name} does not come to rest: {last}"
+            assert max(map(abs, _rates(robot, last))) <= STILL, f"{channel.name} does not come to rest: {last}"
     _drive(robot, clock, [0.5 * PART * channel.rate_max for channel in each], period, settles_s, last)
     robot.stop(clock.now())
     clock.sleep_until(clock.now() + settles_s)
     last = _read(robot, clock, last)
-    assert max(map(abs, _rates(last))) <= STILL, f"moves after stop: {last}"
+    assert max(map(abs, _rates(robot, last))) <= STILL, f"moves after stop: {last}"
     if robot.simulated:
         robot.restart(clock.now())
         again = _read(robot, clock, None)
-        off = max(abs(a - b) for a, b in zip(_positions(again), _positions(first), strict=True))
+        off = max(abs(a - b) for a, b in zip(_positions(robot, again), _positions(robot, first), strict=True))
         assert off <= STILL, f"restart is {off:.2g} off the start"
 
 
@@ -90,15 +90,17 @@ def _read(robot: Robot, clock: Clock, before: RobotState | None) -> RobotState:
     return state
 
 
-def _positions(state: RobotState) -> tuple[float, ...]:
-    """Return what each channel moves; for the base's place, its distance along the heading."""
+def _positions(robot: Robot, state: RobotState) -> tuple[float, ...]:
+    """Return what each channel moves; for the base's place, its distance along the heading, and to its left."""
     pose = state.pose
-    along = pose.x * math.cos(pose.yaw) + pose.y * math.sin(pose.yaw)
-    return along, pose.yaw, *state.q
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    where = BaseTwist(pose.x * c + pose.y * s, pose.y * c - pose.x * s, pose.yaw)
+    return *robot.model.base.rates(where), *state.q
 
 
-def _rates(state: RobotState) -> tuple[float, ...]:
-    return state.motion.v_x, state.motion.w_z, *state.dq
+def _rates(robot: Robot, state: RobotState) -> tuple[float, ...]:
+    motion = state.motion
+    return *robot.model.base.rates(BaseTwist(motion.v_x, motion.v_y, motion.w_z)), *state.dq
 
 
 def _drive(
@@ -106,15 +108,15 @@ def _drive(
 ) -> RobotState:
     for _ in range(max(1, round(seconds / period))):
         now = clock.now()
-        base = BaseTwist(wanted[0], 0.0, wanted[1])
-        robot.write(base, tuple(wanted[2:]), None, now, now + 2.0 * period)
+        base = robot.model.base
+        robot.write(base.twist(tuple(wanted)), tuple(wanted[base.axes :]), None, now, now + 2.0 * period)
         clock.sleep_until(now + period)
         last = _read(robot, clock, last)
     return last
 
 
-def _check_rates(state: RobotState, wanted: list[float], names: list[str]) -> None:
+def _check_rates(robot: Robot, state: RobotState, wanted: list[float], names: list[str]) -> None:
     most = max(map(abs, wanted))
-    for name, rate, asked in zip(names, _rates(state), wanted, strict=True):
+    for name, rate, asked in zip(names, _rates(robot, state), wanted, strict=True):
         off = abs(rate - asked)
         assert off <= TOLERANCE * most + STILL, f"{name} is {rate:.3g}, {asked:.3g} was asked for"

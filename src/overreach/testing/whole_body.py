@@ -12,7 +12,7 @@ from overreach.model.model import Model
 from overreach.types import HandTwist, Plan, Twist
 from overreach.verdicts import Verdict
 
-RATES = ("v_b", "w_b", "v_m", "w_m")
+RATES = ("v_b", "v_y", "w_b", "v_m", "w_m")
 SAME = 1e-9
 """How closely [m/s, rad/s] the polar rates of a plan must match those of its joint rates ..."""
 EXACT_TO = 1e-9
@@ -80,6 +80,7 @@ def _check_plan(plan: Plan, chain: Chain, u: HandTwist) -> None:
 
 def _check_exact(model: Model, plan: Plan, chain: Chain, u: HandTwist) -> None:
     split = plan.split
-    got = ee_velocity(chain.l, chain.psi, split.v_b, split.w_b, split.v_m, split.w_m, model.mount.three)
+    rates = split.v_b, split.w_b, split.v_m, split.w_m
+    got = ee_velocity(chain.l, chain.psi, *rates, model.mount.three, split.v_y or 0.0)
     off = math.hypot(got[0] - split.scale * u.u_r, got[1] - split.scale * u.u_t)
     assert off <= EXACT_TO, f"the hand is {off:.2g} m/s off its command at {chain.joints} for {u}: {plan}"

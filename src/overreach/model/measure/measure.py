@@ -35,7 +35,8 @@ FIXED = 0.5
 SIGMA = 1.0 / 3.0
 """The least singular value of a workspace, in parts of full deflection v."""
 SHARE_V, SHARE_BASE, SHARE_TURN, SHARE_SIGMA, SHARE_UP = 0.33, 0.6, 0.8, 3.0, 0.27
-"""v = min(0.33 R/s, 0.6 v_max, 0.8 p_x (w_max - w), 3 sigma), v_z = 0.27 v ..."""
+"""v = min(0.33 R/s, 0.6 v_max, 0.8 p_x (w_max - w), 3 sigma), v_z = 0.27 v; on a base that moves sideways too with
+0.8 (v_max - w |s|) for the third, s the shoulder ..."""
 TURN = 0.3
 """... and w [rad/s]."""
 UPRIGHT = 0.97
@@ -114,10 +115,11 @@ def measure(
             f"{manner.sigma:.3g} are needed"
         )
     ahead = ahead_of(mount, walked.l, walked.psi)
-    ok = walked.ok & (np.abs(walked.psi) <= BEARINGS + 1e-9)[None, :, None] & (ahead >= AHEAD * R)[:, :, None]
+    least = -np.inf if base.omni else AHEAD * R
+    ok = walked.ok & (np.abs(walked.psi) <= BEARINGS + 1e-9)[None, :, None] & (ahead >= least)[:, :, None]
     if not ok[walked.home]:
         where = arm.posture_at_home
-        if abs(where.psi) > BEARINGS or ahead[walked.home[:2]] < AHEAD * R:
+        if abs(where.psi) > BEARINGS or ahead[walked.home[:2]] < least:
             raise WorkspaceError(
                 f"home is beside the base: its hand is at psi = {where.psi:.2f} rad, "
                 f"{ahead[walked.home[:2]]:.2f} m ahead of the turning centre; choose one in front of it"
@@ -143,12 +145,15 @@ def measure(
     p_x = float(ahead[inside[:2]].min())
     words = tuple(WORDS[row] for row in WORDS if manner.held & row)
     measured = Measured(_round(l), _round(psi), _round(z), words, round(sigma, 4), round(p_x, 4), model, manner.yaw)
-    return Result(measured, sentence(manner.held, up), warnings, walked, box, fastest(R, sigma, p_x, base))
+    return Result(measured, sentence(manner.held, up), warnings, walked, box, fastest(R, sigma, p_x, base, mount))
 
 
-def fastest(R: float, sigma: float, p_x: float, base: Base) -> float:
+def fastest(R: float, sigma: float, p_x: float, base: Base, mount: Mount) -> float:
     """Return full deflection v [m/s], for a reach R [m], least singular value [m/s] and distance p_x [m] ahead."""
-    turning = SHARE_TURN * p_x * max(0.0, base.w_max - TURN)
+    if base.omni:  # it carries the hand at the hand's own speed, and its shoulder round at w
+        turning = SHARE_TURN * max(0.0, base.v_max - TURN * math.hypot(mount.s_x, mount.s_y))
+    else:
+        turning = SHARE_TURN * p_x * max(0.0, base.w_max - TURN)
     return min(SHARE_V * R, SHARE_SIGMA * sigma, SHARE_BASE * base.v_max, turning)
 
 

@@ -23,6 +23,10 @@ LEVEL = 0.1
 """An axis is level, or upright, within this."""
 FINGER = 0.2
 """A slide with less travel than this [m], at the end of a chain, is a finger's."""
+OMNI = 3
+"""A base that moves sideways has so many wheels at least ..."""
+ONE_WAY = 0.9
+"""... whose axes' cosine to the first's is not all above this."""
 USUAL_SPEED, USUAL_LIFT = 1.5, 0.1
 """Joint speeds [rad/s, m/s] where the model has none: to be looked up."""
 ACCELERATION = 8.0
@@ -35,6 +39,7 @@ class Guess(NamedTuple):
     """What was found: names in the model, and where they were only guessed."""
 
     base: str
+    kind: str
     wheels: tuple[str, ...]
     joints: tuple[str, ...]
     hand: str
@@ -68,7 +73,8 @@ def guess(model: mujoco.MjModel, speeds: dict[str, float], what: str) -> Guess:
         found.append((speeds[name], True) if name in speeds else (USUAL_LIFT if slide else USUAL_SPEED, False))
     return Guess(
         base=model.body(base).name,
-        wheels=tuple(model.joint(j).name for j in wheels[:2]),
+        kind="omni" if _omni(data, wheels) else "differential",
+        wheels=tuple(model.joint(j).name for j in wheels),
         joints=tuple(names),
         hand=model.body(last).name,
         approach=_approach(model, data, last),
@@ -77,6 +83,12 @@ def guess(model: mujoco.MjModel, speeds: dict[str, float], what: str) -> Guess:
         footprint=_footprint(model, data, base),
         chains=tuple(others),
     )
+
+
+def _omni(data: mujoco.MjData, wheels: list[int]) -> bool:
+    """Say whether wheels are those of a base that moves sideways: three or more, and not all of them roll one way."""
+    axes = [data.xaxis[j] for j in wheels]
+    return len(axes) >= OMNI and any(abs(float(axes[0] @ axis)) < ONE_WAY for axis in axes)
 
 
 def _base(model: mujoco.MjModel, what: str) -> int:
@@ -190,7 +202,7 @@ model = "{model}"
 home = [{", ".join(f"{one:g}" for one in home)}]   {guessed}`overreach workspace --find-home` looks for a better one
 
 [base]
-kind = "differential"   {guessed}the only kind so far
+kind = "{found.kind}"   {guessed}"differential" drives and turns, "omni" moves sideways too
 body = "{found.base}"
 wheels = [{wheels}]
 v_max = 0.5   {guessed}[m/s]

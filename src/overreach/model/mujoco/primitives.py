@@ -64,6 +64,17 @@ def wheel(base: mujoco.MjsBody, name: str, at: Three, radius: float, width: floa
     )  # fmt: skip
 
 
+def omni_wheel(base: mujoco.MjsBody, name: str, at: Three, heading: float, radius: float, width: float) -> None:
+    """Add a driven wheel that rolls to `heading` [rad], without the rollers of a mecanum or omni wheel."""
+    attitude = (math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading))
+    body = base.add_body(name=f"{name}_wheel", pos=at, quat=attitude)
+    body.add_joint(name=f"wheel_{name}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0.0, 1.0, 0.0), damping=0.02)
+    mass = 1e3 * math.pi * radius * radius * width
+    body.add_geom(
+        type=Geom.mjGEOM_CYLINDER, size=(radius, 0.5 * width, 0.0), quat=ON_ITS_SIDE, mass=mass, rgba=DARK,
+    )  # fmt: skip
+
+
 def caster(base: mujoco.MjsBody, name: str, at: Three, radius: float, trail: float) -> None:
     """Add a caster: a swivel about z, and a wheel that trails behind it."""
     fork = base.add_body(name=f"{name}_fork", pos=at)

@@ -19,6 +19,7 @@ from overreach.model.measure.rank import farthest
 from overreach.model.mujoco.chain import extract
 from overreach.model.mujoco.contact import Contacts
 from overreach.model.mujoco.source import compiled, spec_of
+from overreach.model.mujoco.wheels import wheels_of
 from overreach.types import Channel
 
 CONTACT = 0.022
@@ -71,7 +72,10 @@ def parts_of(description: Description, folder: Path) -> Parts:
     arm = SpatialArm(tuple(channels), found.screws, found.tip, description.home, manner, compiled=False)
     arm = arm.held(msgspec.structs.replace(manner, reach=farthest(arm)))
     table = description.base
-    base = Base(table.v_max, table.w_max, table.dv_max, table.dw_max, table.footprint, table.lag)
+    wheels = wheels_of(model, description)
+    base = Base(
+        table.v_max, table.w_max, table.dv_max, table.dw_max, table.footprint, table.lag, table.kind == "omni", wheels
+    )  # fmt: skip
     return Parts(description, arm, found.mount, base, model, _key(model, description), source.warnings)
 
 

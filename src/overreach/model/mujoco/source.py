@@ -13,7 +13,7 @@ from overreach.extras import require
 from overreach.model.mujoco.urdf import Source, read_urdf
 
 BUILTIN = "overreach.model.mujoco"
-MADE = ("mobile4", "mobile7")
+MADE = ("mobile4", "mobile7", "omni5", "omni7")
 """Modules there that make a model."""
 
 

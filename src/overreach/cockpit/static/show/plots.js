@@ -12,7 +12,7 @@ const FONT = "system-ui, sans-serif"; // a canvas knows nothing of the style she
 const PLOTS = {
   l: { series: [["l", "ink", (s) => s.l]], limits: ["l_min", "l_max"], pad: 0.1 },
   psi: { series: [["psi", "ink", (s) => s.psi]], limits: ["psi_min", "psi_max"], pad: 0.2 },
-  linear: { series: [["v_b", "base", (s) => s.base.v_x], ["v_m", "arm", (s) => s.v_m]], span: 0.5 },
+  linear: { series: [["v_b", "base", (s) => (s.base.v_y ? Math.hypot(s.base.v_x, s.base.v_y) : s.base.v_x)], ["v_m", "arm", (s) => s.v_m]], span: 0.5 },
   angular: { series: [["w_b", "base", (s) => s.base.w_z], ["w_m", "arm", (s) => s.w_m]], span: 0.5, time: true },
 };
 

@@ -314,10 +314,15 @@ export class View {
     g.translate(...this.px(x, y));
     g.rotate(this.onScreen(heading)); // from here on x is the base's x axis, y to its right
     g.fillStyle = this.c.base;
-    for (const side of [-1, 1]) {
+    for (const wheel of this.scene.wheels) {
+      g.save();
+      g.translate(wheel.x * this.scale, -wheel.y * this.scale);
+      g.rotate(-wheel.heading);
+      const [long, wide] = [2 * wheel.radius * this.scale, 0.8 * wheel.radius * this.scale];
       g.beginPath();
-      g.roundRect(-length * 0.17, side * width * 0.5 - width * 0.07, length * 0.34, width * 0.14, 3);
+      g.roundRect(-long / 2, -wide / 2, long, wide, 3);
       g.fill();
+      g.restore();
     }
     g.beginPath();
     g.roundRect(-length / 2, -width / 2, length, width, Math.min(length, width) * 0.18);
