@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
+from overreach.control.decision import Decision
 from overreach.control.pilot import Pilot
 from overreach.law.body import WholeBody
 from overreach.model.model import Model
 from overreach.requests import ArmRequest, ResetRequest
 from overreach.robots.imperfect import Imperfection
 from overreach.robots.kinematic import KinematicRobot
-from overreach.types import Decision, RobotState
+from overreach.types import RobotState
 from tests.said import said
 
 ME = 11

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from math import inf, isfinite
-from operator import add
 from typing import cast
 
 import msgspec
 from msgspec.structs import astuple
 
-from overreach.arm.chain import NO_REST, Chain, Governing, Rest, governs
+from overreach.arm.chain import Chain, Governing, governs
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
+from overreach.control.decision import Decision
 from overreach.control.governed import Governor, amid, slipped
+from overreach.control.solved import Solved
 from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
-from overreach.law.authority import arm_residual
 from overreach.law.body import Planner, UnusableError, WholeBody, checked
 from overreach.law.frame import FRAMES, heading_rate, meant
 from overreach.model.model import Model, channels
 from overreach.types import (
     FLOATS,
-    BaseTwist,
-    Decision,
     Frame,
     HandTwist,
     PolarState,
@@ -55,11 +53,11 @@ class HandController:
         all_of_them = channels(model)
         self._arm, self._mount, self._base = model.arm, model.mount.three, model.base
         self._still = (0.0,) * len(model.arm.channels)
-        self._beyond = any(row > 1 for row in model.arm.rows)
         self._governs = governs(model.arm)
         self.guard = Guard(all_of_them, ramp_s)
-        self._bounds = self._bounded(model)
-        self._governor = Governor(model, self._bounds, self.guard)
+        bounds = self._bounded(model)
+        self._governor = Governor(model, bounds, self.guard)
+        self._solved = Solved(model, bounds)
         self._feedback = Feedback(all_of_them)
         self.frame, self._angle = law.frame, FRAMES[law.frame]
         self.configure(law)
@@ -77,7 +75,7 @@ class HandController:
         if model.mount != self.model.mount or len(model.arm.channels) != len(self._still):
             raise SetupError("a law is changed for the same robot: its mount and its joints stay as they are")
         name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
-        self.model, self._lags = model, model.base.lag > 0.0
+        self.model = model
         self._governor.model = model
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
 
@@ -214,10 +212,8 @@ class HandController:
     def _moving(self, chain: Chain, state: RobotState, twist: Twist, dt: float) -> Decision:
         """Return the decision for a command: the whole body's plan, the residual, the limits, the joints."""
         polar = self._located(chain, state)
-        l, psi, mount, closes = polar.l, polar.psi, self._mount, self._closes
-        u = meant(self._angle, twist, l, psi + mount[2], state.pose.yaw, polar.theta_e)
-        u_r, u_t = u.u_r, u.u_t
-        is_ = state.motion
+        closes, is_ = self._closes, state.motion
+        u = meant(self._angle, twist, polar.l, polar.psi + self._mount[2], state.pose.yaw, polar.theta_e)
         base = self._base
         turning = self.guard.written[base.axes - 1] + self._governor.w_m
         plan = checked(self._plan(chain, amid(u, 0.5 * turning * dt) if self._governs else u, is_))
@@ -228,66 +224,10 @@ class HandController:
             self._shares = split.mu, split.sigma
             slip = slipped(is_, base.twist(self._feedback.asked.in_force)) if closes else NO_TWIST
             return self._governor.decide(cast(Governing, chain), state, polar, u, split, slip, dt)
-        if own is not None and len(own) != len(self._still):
-            raise UnusableError(f"{len(own)} joint rates for {len(self._still)} joints")
-        full, verdict = split.scale, split.verdict
-        if verdict is MOVING and full < 1.0:
-            verdict = Verdict.BESIDE
-        v_b, v_y, w_b, v_m, w_m = split.v_b, split.v_y or 0.0, split.w_b, split.v_m, split.w_m
-
-        # The base may not do what it was asked for: assume that it keeps deviating as it last did.
-        slip_v = slip_y = slip_w = 0.0
-        if closes:
-            then = base.twist(self._feedback.asked.in_force)
-            slip_v, slip_y, slip_w = is_.v_x - then.v_x, is_.v_y - then.v_y, is_.w_z - then.w_z
-        open_ = closes and (slip_v != 0.0 or slip_y != 0.0 or slip_w != 0.0 or self._lags)
-        owed = self._still
-        if open_:
-            real = v_b + slip_v, w_b + slip_w, mount, v_y + slip_y
-            v_m, w_m = arm_residual(l, psi, u_r * full, u_t * full, *real)
-            rest = (0.0, 0.0, 0.0, -slip_w)
-            owed = chain.rates(*arm_residual(l, psi, 0.0, 0.0, slip_v, slip_w, mount, slip_y), rest, 0.0)[0]
-        if own is None:
-            joints, short = chain.rates(v_m, w_m, self._rest_of(u, full, w_b + slip_w), dt)
-        else:
-            joints, short = tuple(map(add, own, owed)), MOVING
-
-        scale, free, bounds, changed = 1.0, None, self._bounds, False
-        wanted = base.rates(BaseTwist(v_b, v_y, w_b))
-        if not bounds.keep((*wanted, *joints), state.q, dt):
-            free = bounds.room(state.q, dt)
-            scale, why = bounds.scale((*wanted, *joints), owed, free)
-            if why is not MOVING:
-                verdict = why
-            kept = bounds.base(tuple([rate * scale for rate in wanted]))
-            changed = kept != wanted
-            v_b, v_y, w_b = astuple(base.twist(kept))
-        if scale != 1.0 or (closes and changed):
-            if closes:
-                k, real = full * scale, (v_b + slip_v, w_b + slip_w, mount, v_y + slip_y)
-                v_m, w_m = arm_residual(l, psi, u_r * k, u_t * k, *real)
-            else:
-                v_m, w_m = v_m * scale, w_m * scale
-            if own is None:
-                joints, short = chain.rates(v_m, w_m, self._rest_of(u, full * scale, w_b + slip_w), dt)
-            else:
-                joints = tuple([rate * scale + more for rate, more in zip(own, owed, strict=True)])
-        bounded = joints if free is None else bounds.joints(joints, free)
-        if short is not MOVING:
-            verdict = short
-        if short is not MOVING or bounded != joints:
-            joints = bounded
-            v_m, w_m, *_ = chain.moved(joints)  # what these joint rates really do
+        off = slipped(is_, base.twist(self._feedback.asked.in_force)) if closes else None
+        decision = self._solved.decide(chain, state, polar, u, plan, off, dt)
         self._shares = split.mu, split.sigma
-        aside = v_y if base.omni else None
-        applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, full * scale, split.verdict, aside)
-        return Decision(state, polar, u, applied, joints, full * scale, verdict)
-
-    def _rest_of(self, u: HandTwist, scale: float, w_b: float) -> Rest:
-        """Return what the arm owes beyond the plane, with the base turning at w_b; all zero for an arm in the plane."""
-        if not self._beyond:
-            return NO_REST
-        return u.u_z * scale, u.w_r * scale, u.w_t * scale, u.w_z * scale - w_b
+        return decision
 
     def _last_word(
         self, decision: Decision, chain: Chain, motion: Motion, dt: float

@@ -10,12 +10,13 @@ import msgspec
 from overreach.arm.chain import Asked, Governing
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
+from overreach.control.decision import Decision
 from overreach.gate.guard import Guard
 from overreach.law.blend import rise_smoothstep
 from overreach.model.base import Base
 from overreach.model.model import Model
 from overreach.model.workspace import Workspace
-from overreach.types import BaseTwist, Decision, HandTwist, PolarState, RobotState, Split, Twist
+from overreach.types import BaseTwist, HandTwist, PolarState, RobotState, Split, Twist
 from overreach.verdicts import Verdict
 
 HELD_BACK = 0.5

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from overreach.control.decision import Decision
 from overreach.gate.gate import Gated
 from overreach.law.body import Planner, WholeBody
 from overreach.model.model import Model
 from overreach.requests import Request
-from overreach.types import BaseTwist, Command, Decision, PolarState, Record, RobotState, Split
+from overreach.types import BaseTwist, Command, PolarState, Record, RobotState, Split
 from overreach.verdicts import Verdict, weightier
 
 

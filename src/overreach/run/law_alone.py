@@ -8,11 +8,12 @@ from typing import final
 from overreach.arm.chain import Chain
 from overreach.control.bounds import Bounds
 from overreach.control.controller import HandController
+from overreach.control.decision import Decision
 from overreach.control.pilot import Pilot
 from overreach.gate.gate import STILL, Gated
 from overreach.law.body import WholeBody
 from overreach.model.model import Model
-from overreach.types import Command, Decision, Frame, RobotState
+from overreach.types import Command, Frame, RobotState
 from overreach.verdicts import Motion, Verdict
 
 
