@@ -28,6 +28,7 @@ class Frame(enum.StrEnum):
     POLAR = "polar"
     BASE = "base"
     WORLD = "world"
+    TOOL = "tool"
 
 
 class Channel(Record, frozen=True):
@@ -134,7 +135,8 @@ class PolarState(Record, frozen=True):
 class HandTwist(Record, frozen=True):
     """The commanded velocity of the hand in polar axes: outward, counter-clockwise and up, at the base's heading.
 
-    u_r, u_t, u_z [m/s]; w_r, w_t, w_z [rad/s].
+    u_r, u_t, u_z [m/s]; w_r, w_t, w_z [rad/s]. Of an arm that does not hold all turnings of its hand, w_r is about the
+    axis that the hand points along.
     """
 
     u_r: float = 0.0

@@ -16,7 +16,8 @@ from overreach.arm.mount import Mount
 from overreach.arm.spatial import asked as asks
 from overreach.arm.spatial import step as layout
 from overreach.arm.spatial import task
-from overreach.arm.spatial.arm import SpatialArm, SpatialChain, turned, vector
+from overreach.arm.spatial.arm import SpatialArm, SpatialChain
+from overreach.arm.spatial.attitude import turned, vector
 from overreach.arm.spatial.inverse import SLIGHT, damping, inverse, rates
 from overreach.arm.spatial.manner import TOL_V
 from overreach.arm.spatial.room import NULL_SPEED, SPEED, bounds
@@ -127,7 +128,13 @@ def asked_at_random(random: np.random.Generator, arm: SpatialArm) -> Array:
     asked[asks.WAS : asks.WAS + 3] = asked[asks.PLAN : asks.PLAN + 3] + random.normal(0.0, 0.02, 3)
     asked[asks.STEP : asks.STEP + 3] = (0.015, 0.015, 0.04)
     asked[asks.DT] = random.choice([0.005, 0.01])
-    asked[asks.S_X : asks.ASKED] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
+    asked[asks.S_X : asks.ATTITUDE] = (0.1, 0.05, math.cos(0.2), math.sin(0.2))
+    held = arm.R_home
+    if random.random() < 0.4:  # turned a little, or much, and turning on
+        held = turned(random.normal(0.0, random.choice([0.01, 0.5]), 3)) @ held
+        asked[asks.TURN : asks.SPIN] = random.normal(0.0, 0.2, 3) * (random.random(3) < 0.7)
+        asked[asks.SPIN] = random.normal(0.0, 0.2) * (random.random() < 0.5)
+    asked[asks.ATTITUDE : asks.TURN] = held.ravel()
     asked[asks.ASKED :] = random.normal(0.0, 0.3, n) * (random.random() < 0.7)
     return asked
 

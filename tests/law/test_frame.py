@@ -18,7 +18,7 @@ def test_frames_mean_the_same_velocity(
     """In each frame x and y lie along its axes, and w_z sweeps the hand about the shoulder, seen in the world."""
     bearing = theta_b + psi_d
     r = complex(math.cos(bearing), math.sin(bearing))
-    along = {Frame.HAND: theta_e, Frame.POLAR: bearing, Frame.BASE: theta_b, Frame.WORLD: 0.0}
+    along = {Frame.HAND: theta_e, Frame.POLAR: bearing, Frame.BASE: theta_b, Frame.WORLD: 0.0, Frame.TOOL: bearing}
     for frame, angle in FRAMES.items():
         turn = complex(math.cos(along[frame]), math.sin(along[frame]))
         twist = Twist(v_x, v_y, 0.1, 0.2, -0.3, w_z)

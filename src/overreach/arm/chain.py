@@ -30,7 +30,9 @@ class Asked(Record, frozen=True):
     u: velocity of the hand [m/s]: outward, counter-clockwise, up; w_c [rad/s] and delta [rad]: of the heading that a
     yaw fixed in the world has, its turning and how far it is past the bearing; plan: what the law wants of the base;
     slip: how the base deviates from what it is told; was, change: the base twist written last, and how much it can
-    change in this period; joints: their rates written last [rad/s, m/s]; dt: the period [s].
+    change in this period; joints: their rates written last [rad/s, m/s]; dt: the period [s]; turn [rad/s]: how the
+    attitude that is held is to turn, about r, t and z, of an arm that does not hold all turnings about the axis that
+    the hand points along, and t; attitude: the one that is held at bearing 0, by rows, None: home's.
     """
 
     u: tuple[float, float, float]
@@ -42,16 +44,22 @@ class Asked(Record, frozen=True):
     change: tuple[float, float, float]
     joints: tuple[float, ...]
     dt: float
+    turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    attitude: tuple[float, ...] | None = None
 
 
 class Step(Record, frozen=True):
-    """What one step comes to: rates to write, the part of the command that they carry out, and why it is less."""
+    """What one step comes to: rates to write, the part of the command that they carry out, and why it is less.
+
+    attitude: the one that is held from then on, as in `Asked`.
+    """
 
     joints: tuple[float, ...]
     base: tuple[float, float, float]
     scale: float
     verdict: Verdict
     reason: str
+    attitude: tuple[float, ...] | None = None
 
 
 class Chain(Protocol):
@@ -117,12 +125,26 @@ class Governing(Chain, Protocol):
         ...
 
     @property
-    def heading(self) -> float:
-        """How far [rad] the heading that the hand holds is past its bearing."""
+    def tool(self) -> Array:
+        """The hand's own axes, forward, left and up, in polar axes: the columns of (3, 3)."""
         ...
 
-    def turning(self, w_c: float, w_b: float, joints: tuple[float, ...]) -> float:
-        """Return how fast [rad/s] the hand is to yaw in the world, for a command w_c and rates of base and joints."""
+    def heading(self, attitude: tuple[float, ...] | None = None) -> float:
+        """Return how far [rad] the heading that the hand holds is past its bearing. attitude: as in `Asked`."""
+        ...
+
+    def turning(
+        self,
+        w_c: float,
+        w_b: float,
+        joints: tuple[float, ...],
+        turn: Point = (0.0, 0.0, 0.0),
+        attitude: tuple[float, ...] | None = None,
+    ) -> Point:
+        """Return how fast [rad/s] the hand is to turn in the world, along the base's axes.
+
+        For a command w_c and rates of base and joints; turn, attitude: as in `Asked`.
+        """
         ...
 
     def step(self, asked: Asked) -> Step:
@@ -138,8 +160,8 @@ def governs(arm: Arm) -> bool:
 class Arm(Protocol):
     """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`).
 
-    One that has joint motions to choose from says `governs = True`: its chains are then `Governing`. One that does not
-    carry out every part of a twist for which it has a row says in `follows` which of v_z, w_x, w_y it does.
+    One that has joint motions to choose from says `governs = True`: its chains are then `Governing`. It also says in
+    `follows` which of v_z, w_x, w_y its step carries out, and in `whole` whether it turns its hand about any axis.
     """
 
     @property

@@ -112,7 +112,7 @@ def _headings(model: DescribedRobot, driven: Driven, bearing: Array) -> Array:
     heading = np.empty(len(bearing))
     for k in range(len(bearing)):
         if k == 0 or rests[k - 1]:
-            heading[k] = bearing[k] + model.arm.at(tuple(driven.q[k].tolist()), model.mount).heading
+            heading[k] = bearing[k] + model.arm.at(tuple(driven.q[k].tolist()), model.mount).heading()
         else:
             heading[k] = heading[k - 1] + turned[k - 1]
     return heading

@@ -17,8 +17,9 @@ from overreach.control.solved import Solved
 from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
+from overreach.gate.limits import part_within
 from overreach.law.body import Planner, UnusableError, WholeBody, checked
-from overreach.law.frame import FRAMES, heading_rate, meant
+from overreach.law.frame import FRAMES, heading_rate, meant, meant_by_tool
 from overreach.model.model import Model, channels
 from overreach.types import (
     FLOATS,
@@ -54,6 +55,7 @@ class HandController:
         self._arm, self._mount, self._base = model.arm, model.mount.three, model.base
         self._still = (0.0,) * len(model.arm.channels)
         self._governs = governs(model.arm)
+        self._whole = bool(getattr(model.arm, "whole", True))
         self.guard = Guard(all_of_them, ramp_s)
         bounds = self._bounded(model)
         self._governor = Governor(model, bounds, self.guard)
@@ -83,7 +85,7 @@ class HandController:
         """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
         start = self.model.start
         self._theta_e: float | None = None
-        self._governor.rest()
+        self._governor.restart()
         self._now = 0.0
         self._shares = (0.0, 0.0)
         posture = self._arm.posture(start.l, start.psi)
@@ -213,21 +215,39 @@ class HandController:
         """Return the decision for a command: the whole body's plan, the residual, the limits, the joints."""
         polar = self._located(chain, state)
         closes, is_ = self._closes, state.motion
-        u = meant(self._angle, twist, polar.l, polar.psi + self._mount[2], state.pose.yaw, polar.theta_e)
+        u, part = self._meant(twist, chain, polar, state)
+        in_place = self._in_place
+        asked = _with(u, w_z=0.0) if in_place else u
         base = self._base
         turning = self.guard.written[base.axes - 1] + self._governor.w_m
-        plan = checked(self._plan(chain, amid(u, 0.5 * turning * dt) if self._governs else u, is_))
+        plan = checked(self._plan(chain, amid(asked, 0.5 * turning * dt) if self._governs else u, is_))
         split, own = plan.split, plan.joints
         if split.v_y is not None and not base.omni:
             raise UnusableError(f"v_y = {split.v_y:g}, but the base cannot move sideways")
         if self._governs and own is None:
             self._shares = split.mu, split.sigma
             slip = slipped(is_, base.twist(self._feedback.asked.in_force)) if closes else NO_TWIST
-            return self._governor.decide(cast(Governing, chain), state, polar, u, split, slip, dt)
+            return self._governor.decide(cast(Governing, chain), state, polar, u, split, slip, dt, part, in_place)
         off = slipped(is_, base.twist(self._feedback.asked.in_force)) if closes else None
         decision = self._solved.decide(chain, state, polar, u, plan, off, dt)
         self._shares = split.mu, split.sigma
         return decision
+
+    def _meant(self, twist: Twist, chain: Chain, polar: PolarState, state: RobotState) -> tuple[HandTwist, float]:
+        """Return what the twist means for the hand, and the part of it that may be commanded."""
+        if self._governs and self.frame is Frame.TOOL:
+            u = meant_by_tool(cast(Governing, chain).tool.tolist(), twist, polar.l, self._whole)
+            swept = 0.0 if self._whole else u.w_z * polar.l
+            return u, part_within(_with(u, u_t=u.u_t - swept), self.model.command)
+        u = meant(self._angle, twist, polar.l, polar.psi + self._mount[2], state.pose.yaw, polar.theta_e)
+        if self._governs and not self._whole:
+            u = _with(u, w_r=twist.w_x, w_t=twist.w_y)
+        return u, 1.0
+
+    @property
+    def _in_place(self) -> bool:
+        """Whether w_z turns the hand in its place, rather than its heading."""
+        return self._governs and self._whole and self.frame is Frame.TOOL
 
     def _last_word(
         self, decision: Decision, chain: Chain, motion: Motion, dt: float

@@ -12,7 +12,8 @@ class Decision(Record, frozen=True):
     state: the newest believed state of the robot; polar: where the hand is; u: its commanded velocity; split: the
     shares, with the rates as they are written; joints: joint rates [rad/s, m/s]; scale: part of the command that is
     carried out; verdict: MOVING, or why it is less; fault: the reason where the verdict is FAULT, else empty; reason:
-    what limits the hand, in words, where there is more to say than the verdict does.
+    what limits the hand, in words, where there is more to say than the verdict does; attitude: the one that the hand
+    holds at bearing 0, by rows, None: home's.
     """
 
     state: RobotState
@@ -24,6 +25,7 @@ class Decision(Record, frozen=True):
     verdict: Verdict
     fault: str = ""
     reason: str = ""
+    attitude: tuple[float, ...] | None = None
 
     @property
     def base(self) -> BaseTwist:

@@ -57,12 +57,16 @@ def within_height(u: HandTwist, z: float, space: Workspace, band: float) -> floa
 
 @final
 class Governor:
-    """Decides for one robot whose arm governs. Keeps the heading that a yaw fixed in the world comes from."""
+    """Decides for one robot whose arm governs.
+
+    Keeps the heading that a yaw fixed in the world comes from, and the attitude that the hand holds.
+    """
 
     def __init__(self, model: Model, bounds: Bounds, guard: Guard) -> None:
         self.model = model
         self._bounds, self._guard = bounds, guard
         self._heading: float | None = None
+        self._attitude: tuple[float, ...] | None = None
         self.w_m = 0.0
         """How fast the arm turns the hand's bearing [rad/s], as it was decided last."""
 
@@ -71,10 +75,19 @@ class Governor:
         self._heading = None
         self.w_m = 0.0
 
+    def restart(self) -> None:
+        """Hold the hand as at home: the robot was put to its start."""
+        self._attitude = None
+        self.rest()
+
     def decide(
-        self, chain: Governing, state: RobotState, polar: PolarState, u: HandTwist, split: Split, slip: Twist, dt: float
-    ) -> Decision:
-        """Decide for a law's split of `u` at full scale; slip: how the base deviates from what it is asked."""
+        self, chain: Governing, state: RobotState, polar: PolarState, u: HandTwist, split: Split, slip: Twist,
+        dt: float, part: float = 1.0, in_place: bool = False,
+    ) -> Decision:  # fmt: skip
+        """Decide for a law's split of `u`; slip: how the base deviates from what it is asked.
+
+        part: of `u` that an operator may command; in_place: whether w_z turns the hand's attitude, not its heading.
+        """
         bounds, model, written = self._bounds, self.model, self._guard.written
         at = model.base
         bounds.prepare(dt)
@@ -84,14 +97,15 @@ class Governor:
             u = msgspec.structs.replace(u, u_z=u_z)
         bearing = state.pose.yaw + polar.psi + model.mount.yaw
         if self._heading is None:
-            self._heading = bearing + chain.heading
+            self._heading = bearing + chain.heading(self._attitude)
+        held = self._attitude
         worst = of_tops(at, split)
-        fast = 1.0 if worst <= 1.0 else 1.0 / worst
+        fast = min(part, 1.0 if worst <= 1.0 else 1.0 / worst)
         scale = split.scale * fast
         step = chain.step(
             Asked(
                 u=(scale * u.u_r, scale * u.u_t, scale * u.u_z),
-                w_c=scale * u.w_z,
+                w_c=0.0 if in_place else scale * u.w_z,
                 delta=wrap(self._heading - bearing),
                 plan=(split.v_b * fast, (split.v_y or 0.0) * fast, split.w_b * fast),
                 slip=(slip.v_x, slip.v_y, slip.w_z),
@@ -99,10 +113,14 @@ class Governor:
                 change=_three(at, bounds.steps),
                 joints=written[at.axes :],
                 dt=dt,
+                turn=(scale * u.w_r, scale * u.w_t, scale * u.w_z if in_place else 0.0),
+                attitude=held,
             )
         )
+        self._attitude = step.attitude
         scale *= step.scale
-        self._heading += u.w_z * scale * dt
+        if not in_place:
+            self._heading += u.w_z * scale * dt
         verdict = step.verdict
         if verdict is Verdict.MOVING:
             if split.verdict is not Verdict.MOVING:
@@ -116,4 +134,4 @@ class Governor:
         self.w_m = w_m
         aside = v_y if at.omni else None
         applied = Split(split.mu, split.sigma, v_b, w_b, v_m, w_m, scale, split.verdict, aside)
-        return Decision(state, polar, u, applied, step.joints, scale, verdict, reason=step.reason)
+        return Decision(state, polar, u, applied, step.joints, scale, verdict, reason=step.reason, attitude=held)

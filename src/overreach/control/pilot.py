@@ -25,8 +25,8 @@ ROW_OF = {"v_z": 2, "w_x": 3, "w_y": 4}
 
 def obeys(model: Model) -> frozenset[str]:
     """Return the parts of a twist that the hand of `model` can follow, and "gripper" if it has one."""
-    rows = {name for name, row in ROW_OF.items() if row in model.arm.rows}
-    beyond = rows & getattr(model.arm, "follows", rows)
+    rows = frozenset(name for name, row in ROW_OF.items() if row in model.arm.rows)
+    beyond: frozenset[str] = getattr(model.arm, "follows", rows)
     return PLANE | beyond | ({"gripper"} if model.gripper else set())
 
 

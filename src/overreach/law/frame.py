@@ -1,13 +1,14 @@
 """What the operator's twist means: the command frames, and the conversion of each to polar axes at the hand.
 
 A frame sets the axes along which the twist's x and y lie: its x axis is at an angle from r, the direction outward
-from the shoulder. w_z sweeps the hand about the shoulder, in every frame:
+from the shoulder. w_z sweeps the hand about the shoulder:
     u = R(angle) v + w_z z x (p_e - p_shoulder)
+In the frame of the tool all six are along the hand's own axes, and turn it in its place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import cos, sin
 
 from overreach.types import Frame, HandTwist, Twist
@@ -39,11 +40,20 @@ def world(psi_d: float, theta_b: float, theta_e: float) -> float:
     return -(psi_d + theta_b)
 
 
+def tool(psi_d: float, theta_b: float, theta_e: float) -> float:
+    """X goes where the gripper points, z to its upper side, and it turns in its place: as through a camera in the hand.
+
+    Of a hand in the plane the same as polar.
+    """
+    return 0.0
+
+
 FRAMES: dict[Frame, CommandFrame] = {
     Frame.HAND: hand,
     Frame.POLAR: polar,
     Frame.BASE: base,
     Frame.WORLD: world,
+    Frame.TOOL: tool,
 }
 
 
@@ -57,6 +67,21 @@ def meant(angle: CommandFrame, twist: Twist, l: float, psi_d: float, theta_b: fl
         u_r -= v_y * s
         u_t += v_y * c
     return HandTwist(u_r, u_t + twist.w_z * l, twist.v_z, w_x * c - w_y * s, w_x * s + w_y * c, twist.w_z)
+
+
+def meant_by_tool(axes: Sequence[Sequence[float]], twist: Twist, l: float, whole: bool) -> HandTwist:
+    """Return, in polar axes, a twist along the hand's own axes; these are the columns of `axes` (3, 3).
+
+    whole: whether the arm can turn the hand about any axis. One that cannot turns it about the axis that it points
+    along and about t, and sweeps it about the shoulder.
+    """
+    v_x, v_y, v_z = twist.v_x, twist.v_y, twist.v_z
+    w_x, w_y, w_z = twist.w_x, twist.w_y, twist.w_z
+    u_r, u_t, u_z = [a * v_x + b * v_y + c * v_z for a, b, c in axes]
+    if not whole:
+        return HandTwist(u_r, u_t + w_z * l, u_z, w_x, w_y, w_z)
+    w_r, w_t, w_z = [a * w_x + b * w_y + c * w_z for a, b, c in axes]
+    return HandTwist(u_r, u_t, u_z, w_r, w_t, w_z)
 
 
 def heading_rate(frame: Frame, w_z: float) -> float | None:

@@ -11,7 +11,7 @@ import numpy as np
 from overreach.arm.chain import Governing, governs
 from overreach.control.tick import Tick
 from overreach.model.model import Model
-from overreach.types import RobotState
+from overreach.types import Frame, RobotState
 
 
 class SpatialRow(NamedTuple):
@@ -79,12 +79,14 @@ def spatial_row(tick: Tick, true: RobotState, model: Model) -> SpatialRow:
     c_r, s_r = math.cos(bearing), math.sin(bearing)
     u, k = decided.u, decided.scale
     turn = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
-    w = chain.turning(u.w_z * k, true.w_b, tick.joints)
+    in_place = tick.gated.frame is Frame.TOOL and getattr(model.arm, "whole", False)
+    w_c, turn_z = (0.0, k * u.w_z) if in_place else (k * u.w_z, 0.0)
+    w = turn @ chain.turning(w_c, true.w_b, tick.joints, (k * u.w_r, k * u.w_t, turn_z), decided.attitude)
     return SpatialRow(
         t=tick.now, verdict=tick.verdict.value, scale=k, mu=decided.split.mu, sigma=decided.split.sigma,
         l=chain.l, psi=chain.psi, z=z,
         u_x=k * (c_r * u.u_r - s_r * u.u_t), u_y=k * (s_r * u.u_r + c_r * u.u_t), u_z=k * u.u_z,
-        u_wx=0.0, u_wy=0.0, u_wz=w,
+        u_wx=float(w[0]), u_wy=float(w[1]), u_wz=float(w[2]),
         x_e=true.x_b + c * x - s * y, y_e=true.y_b + s * x + c * y, z_e=z, **_quaternion(turn @ chain.attitude),
         x_b=true.x_b, y_b=true.y_b, theta_b=true.theta_b, v_b_x=true.v_b, v_b_y=true.motion.v_y, w_b=true.w_b,
         q=true.q, dq=true.dq,

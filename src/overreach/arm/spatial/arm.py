@@ -11,12 +11,12 @@ from overreach.arm.chain import Asked, Moved, Point, Rest, Step
 from overreach.arm.mount import Mount
 from overreach.arm.polar import wrap
 from overreach.arm.spatial import step as layout
+from overreach.arm.spatial.attitude import tool_axes, turned, vector
 from overreach.arm.spatial.engine import Engine, engine
 from overreach.arm.spatial.manner import Manner
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.settle import Posture
-from overreach.arm.spatial.task import wanted, yielding
-from overreach.arm.spatial.turning import apart
+from overreach.arm.spatial.task import PITCH, SPIN, WHOLE, wanted, yielding
 from overreach.types import Channel
 from overreach.verdicts import Verdict
 
@@ -26,6 +26,7 @@ BRAKING = 0.5
 """A joint brakes before its limit with this part of its greatest acceleration."""
 H = 1e-6
 """Step [rad, m] of the differences that give the manipulability's slope."""
+NO_TURN = (0.0, 0.0, 0.0)
 
 
 @final
@@ -54,7 +55,9 @@ class SpatialArm:
         )
         self.posture_at_home = Posture(screws, tip, self.limits, manner)
         self.R_home = self.posture_at_home.R_home
-        self.engine: Engine = engine(screws, tip, self.limits, manner.setup(self.R_home), compiled)
+        self.engine: Engine = engine(screws, tip, self.limits, manner.setup, compiled)
+        self.tool = tool_axes(self.R_home, np.array(manner.approach))
+        self.attitude = tuple(self.R_home.ravel().tolist())
 
     def __reduce__(self) -> tuple[type[SpatialArm], tuple[Any, ...]]:
         """Travel between processes as what it is made from: compiled code would be compiled anew."""
@@ -65,8 +68,17 @@ class SpatialArm:
         return SpatialArm(self.channels, self.screws, self.tip, self.home, manner, self._compiled)
 
     governs = True
-    follows = frozenset({"v_z"})
-    """Parts of a twist beyond the plane that its step carries out; attitudes are held, not yet turned by command."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether it holds all turnings of its hand, so that it can turn it about any axis."""
+        return self.manner.held == WHOLE
+
+    @property
+    def follows(self) -> frozenset[str]:
+        """Parts of a twist beyond the plane that its step carries out: pitch and roll where it holds them."""
+        held = self.manner.held
+        return frozenset({"v_z", *(["w_y"] if held & PITCH else []), *(["w_x"] if held & SPIN else [])})
 
     @property
     def rows(self) -> tuple[int, ...]:
@@ -130,19 +142,36 @@ class SpatialChain:
         c, s = self._turn
         return np.asarray(np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))) @ self.pose[:9].reshape(3, 3))
 
-    @property
-    def heading(self) -> float:
-        """How far [rad] the heading that the hand holds is past its bearing: that which its yaw comes from."""
-        M = self.pose[:9].reshape(3, 3) @ self._arm.R_home.T
+    def heading(self, attitude: tuple[float, ...] | None = None) -> float:
+        """Return how far [rad] the heading that the hand holds is past its bearing: that which its yaw comes from.
+
+        attitude: the one that is held at bearing 0, by default home's.
+        """
+        R_0 = self._arm.R_home if attitude is None else np.array(attitude).reshape(3, 3)
+        M = self.pose[:9].reshape(3, 3) @ R_0.T
         yaw = wrap(math.atan2(M[1, 0] - M[0, 1], M[0, 0] + M[1, 1]) - self.psi)
         return wanted(yaw, self._arm.manner.yaw)
 
-    def turning(self, w_c: float, w_b: float, joints: tuple[float, ...]) -> float:
-        """Return how fast [rad/s] the hand is to yaw: as its bearing does or, where it is fixed, by w_c."""
+    def turning(
+        self,
+        w_c: float,
+        w_b: float,
+        joints: tuple[float, ...],
+        turn: tuple[float, float, float] = NO_TURN,
+        attitude: tuple[float, ...] | None = None,
+    ) -> tuple[float, float, float]:
+        """Return how fast [rad/s] the hand is to turn, along the base's axes.
+
+        It yaws as its bearing does or, where its yaw is fixed, by w_c; and with its attitude, as in `Asked`.
+        """
         inside = 0.0
         if self._arm.manner.yaw > 0.0:
-            _, inside = yielding(self.heading, self._arm.manner.yaw)
-        return inside * w_c + (1.0 - inside) * (w_b + self.moved(joints)[1])
+            _, inside = yielding(self.heading(attitude), self._arm.manner.yaw)
+        x, y, z, spin = self._turning(turn)
+        c, s = self._turn
+        w = np.array((c * x - s * y, s * x + c * y, z)) + spin * self.attitude @ self._arm.manner.approach
+        yaw = inside * w_c + (1.0 - inside) * (w_b + self.moved(joints)[1])
+        return float(w[0]), float(w[1]), float(w[2]) + yaw
 
     @property
     def manipulability(self) -> float:
@@ -218,15 +247,31 @@ class SpatialChain:
             (
                 c * u_r - s * u_t, s * u_r + c * u_t, u_z, asked.w_c, asked.delta,
                 *asked.plan, *asked.slip, *asked.was, *asked.change, asked.dt, mount.s_x, mount.s_y, *self._turn,
-                *asked.joints,
+                *(asked.attitude or arm.attitude), *self._turning(asked.turn), *asked.joints,
             )
         )  # fmt: skip
         out = np.empty(n + layout.DONE)
         arm.engine.step(self._q, self.pose, self.J, numbers, out)
-        *joints, v_x, v_y, w_z, scale, _sigma, joint, why, _off_v, _off_w, _yaw = out.tolist()
+        *joints, v_x, v_y, w_z, scale, _sigma, joint, why, _off_v, _off_w, _yaw = out[: n + layout.HOLDS].tolist()
+        held = asked.attitude if asked.turn == NO_TURN else tuple(out[n + layout.HOLDS :].tolist())
         verdict, said = SAYS[int(why)]
         name = arm.channels[int(joint)].moves if joint >= 0.0 else "A joint"
-        return Step(tuple(joints), (v_x, v_y, w_z), scale, verdict, said.format(name))
+        return Step(tuple(joints), (v_x, v_y, w_z), scale, verdict, said.format(name), held)
+
+    def _turning(self, turn: tuple[float, float, float]) -> tuple[float, float, float, float]:
+        """Return a turning as a step is asked for it: along the arm's axes, and about the approach axis."""
+        if turn == NO_TURN:
+            return 0.0, 0.0, 0.0, 0.0
+        w_r, w_t, w_z = turn
+        c, s = float(self.pose[9]) / self.l, float(self.pose[10]) / self.l
+        if self._arm.whole:
+            return c * w_r - s * w_t, s * w_r + c * w_t, w_z, 0.0
+        return -s * w_t, c * w_t, 0.0, w_r
+
+    @property
+    def tool(self) -> Array:
+        """The hand's own axes, forward, left and up, in polar axes: the columns of (3, 3)."""
+        return np.asarray(self._polar() @ self.pose[:9].reshape(3, 3) @ self._arm.tool)
 
 
 SAYS: dict[int, tuple[Verdict, str]] = {
@@ -240,20 +285,3 @@ SAYS: dict[int, tuple[Verdict, str]] = {
 """Why a step is less than was asked -> the verdict, and its reason with the joint's name."""
 SLIGHT = 1e-14
 """Damping of `rates`, as a part of the trace: of no weight but where the arm is singular."""
-
-
-def turned(w: Array) -> Array:
-    """Return the rotation by the vector `w` [rad]."""
-    angle = float(np.linalg.norm(w))
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = w / angle
-    K = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
-
-
-def vector(R: Array) -> Array:
-    """Return the rotation vector [rad] of R: its logarithm."""
-    w = np.empty(3)
-    apart(R.ravel(), np.eye(3).ravel(), w)
-    return w

@@ -6,11 +6,13 @@ import math
 
 from overreach.arm.spatial.screws import Array
 
-U, W_C, DELTA, PLAN, SLIP, WAS, STEP, DT, S_X, S_Y, COS, SIN, ASKED = 0, 3, 4, 5, 8, 11, 14, 17, 18, 19, 20, 21, 22
+U, W_C, DELTA, PLAN, SLIP, WAS, STEP, DT, S_X, S_Y, COS, SIN = 0, 3, 4, 5, 8, 11, 14, 17, 18, 19, 20, 21
+ATTITUDE, TURN, SPIN, ASKED = 22, 31, 34, 35
 """What is asked, in `asked`: u [m/s] along the arm's axes (3), w_c [rad/s], the wanted yaw past the bearing [rad], the
 base's plan, slip, last written twist and greatest change (3 each: v_x, v_y, w_z, along the base's axes), the period
-[s]; shoulder [m] and cosine and sine of the arm's yaw in the base frame; behind them the joint rates that were written
-last (n)."""
+[s]; shoulder [m] and cosine and sine of the arm's yaw in the base frame; the attitude that is held at bearing 0, by
+rows (9), how it is to turn [rad/s]: along the arm's axes (3), and about the approach axis; behind them the joint rates
+that were written last (n)."""
 
 
 def reach_for(wanted: float, was: float, step: float) -> float:
@@ -35,6 +37,12 @@ def task_of(T: Array, v_x: float, v_y: float, v_z: float, yaw: float, out: Array
     """Write T (v_x, v_y, v_z, 0, 0, yaw) into `out`."""
     for i in range(T.shape[0]):
         out[i] = T[i, 0] * v_x + T[i, 1] * v_y + T[i, 2] * v_z + T[i, 5] * yaw
+
+
+def and_turning(T: Array, part: float, w: Array, out: Array) -> None:
+    """Add part T (0, 0, 0, w) to `out`."""
+    for i in range(3, T.shape[0]):
+        out[i] += part * (T[i, 3] * w[0] + T[i, 4] * w[1] + T[i, 5] * w[2])
 
 
 def left_by(T: Array, base: Array, hand: Array, polar: Array, inside: float, e: Array, out: Array) -> None:

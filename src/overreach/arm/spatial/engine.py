@@ -9,7 +9,7 @@ from typing import Any, Protocol, final
 
 import numpy as np
 
-from overreach.arm.spatial.asked import ASKED, COS, DT
+from overreach.arm.spatial.asked import ASKED, ATTITUDE, COS, DT, TURN
 from overreach.arm.spatial.lean import Lean
 from overreach.arm.spatial.room import CHANNEL, HOME
 from overreach.arm.spatial.screws import Array, forward
@@ -49,6 +49,7 @@ class Compiled:
         self.forward(q, hand, J, places)
         asked = np.zeros(ASKED + n)
         asked[DT], asked[COS] = 0.01, 1.0
+        asked[ATTITUDE:TURN] = np.eye(3).ravel()
         self.step(q, hand, J, asked, np.empty(n + DONE))
 
     def forward(self, q: Array, hand: Array, J: Array, places: Array) -> None:

@@ -12,7 +12,25 @@ from typing import final
 import numpy as np
 
 from overreach.arm.spatial import task
-from overreach.arm.spatial.asked import ASKED, COS, DELTA, DT, PLAN, S_X, S_Y, SIN, SLIP, STEP, W_C, WAS, U, reach_for
+from overreach.arm.spatial.asked import (
+    ASKED,
+    ATTITUDE,
+    COS,
+    DELTA,
+    DT,
+    PLAN,
+    S_X,
+    S_Y,
+    SIN,
+    SLIP,
+    SPIN,
+    STEP,
+    TURN,
+    W_C,
+    WAS,
+    U,
+    reach_for,
+)
 from overreach.arm.spatial.lean_fit import Fit, Floats
 from overreach.arm.spatial.lean_kinematics import Kinematics
 from overreach.arm.spatial.lean_room import joint_of, room, within
@@ -29,14 +47,13 @@ from overreach.arm.spatial.step import (
     EPS,
     FINE,
     HELD,
+    HOLDS,
     K_R,
     MARGIN,
     NOT_WHOLE,
     NULL_GAIN,
     OFF,
     ONE_TURNING,
-    R_HOME,
-    SETUP,
     SLIGHTLY,
     SMALL_TURN,
     STUCK,
@@ -46,7 +63,7 @@ from overreach.arm.spatial.step import (
     D,
     half_turn,
 )
-from overreach.arm.spatial.turning import STRAIGHT, apart, yawed
+from overreach.arm.spatial.turning import STRAIGHT, apart, turned_on, yawed
 
 Three = tuple[float, float, float]
 
@@ -66,16 +83,15 @@ class Lean:
         self._speed = limits[:, SPEED].tolist()
         self._most_null = (NULL_SPEED * limits[:, SPEED]).tolist()
         self._joints = [joint_of(row, setup[MARGIN], setup[NULL_GAIN]) for row in limits.tolist()]
-        self._R_home = setup[R_HOME:SETUP].reshape(3, 3)
         self._approach = setup[APPROACH : APPROACH + 3]
         self._lengths = np.array([1.0, 1.0, 1.0, setup[ELL], setup[ELL], setup[ELL]])[:, None]
 
-    def _task(self, bearing: float, yaw: float) -> Array | None:
-        """Return the rows of the turnings that are held, (m - 3, 3); None for all of them."""
+    def _task(self, bearing: float, R_0: Array, yaw: float) -> Array | None:
+        """Return the rows of the turnings that are held, (m - 3, 3), for Rz(yaw) R_0; None for all of them."""
         if self._held == task.WHOLE:
             return None
         R, T = np.empty(9), np.empty((self._m, 6))
-        yawed(self._setup[R_HOME:], yaw, R)
+        yawed(R_0, yaw, R)
         task.rows(self._held, bearing, R, self._approach, self._ell, T)
         return T[3:, 3:]
 
@@ -91,21 +107,40 @@ class Lean:
             return [*v, ell * turning[0], ell * turning[1], ell * turning[2]]
         return [*v, *(T @ turning).tolist()]
 
-    def _apart(self, hand: Array, yaw: float) -> tuple[float, Three]:
-        """Return the angle and the rotation vector from a hand to Rz(yaw) R_home; see `turning.apart`."""
-        (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = (self._R_home @ hand[:9].reshape(3, 3).T).tolist()
+    def _apart(self, hand: Array, R_0: Array, yaw: float) -> tuple[float, Three]:
+        """Return the angle and the rotation vector from a hand to Rz(yaw) R_0; see `turning.apart`."""
+        M = R_0.reshape(3, 3) @ hand[:9].reshape(3, 3).T
+        (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = M.tolist()
         c, s = math.cos(yaw), math.sin(yaw)
         x, y, z = m21 - s * m02 - c * m12, c * m02 - s * m12 - m20, s * m00 + c * m10 - c * m01 + s * m11
         sine = 0.5 * math.sqrt(x * x + y * y + z * z)
         trace = c * m00 - s * m10 + s * m01 + c * m11 + m22
         if sine < STRAIGHT and trace < 0.0:
             R, e = np.empty(9), np.empty(3)
-            yawed(self._R_home.ravel(), yaw, R)
+            yawed(R_0, yaw, R)
             angle = apart(R, hand, e)
             return angle, (float(e[0]), float(e[1]), float(e[2]))
         angle = math.atan2(sine, 0.5 * (trace - 1.0))
         factor = 0.5 if sine < 1e-9 else 0.5 * angle / sine
         return angle, (factor * x, factor * y, factor * z)
+
+    def _turned(self, R_0: Array, yaw: float, asked: Array, dt: float) -> Array:
+        """See `turning.turned_on`."""
+        if not asked[TURN:ASKED].any() or dt == 0.0:
+            return R_0
+        out = np.empty(9)
+        turned_on(R_0, yaw, asked[TURN:SPIN], asked[SPIN], self._approach, dt, np.empty(9), out)
+        return out
+
+    def _turning(self, R_0: Array, yaw: float, asked: Array) -> Three:
+        """Return the turning that is asked for, along the arm's axes."""
+        x, y, z, spin = asked[TURN:ASKED].tolist()
+        if spin == 0.0:
+            return x, y, z
+        R = np.empty(9)
+        yawed(R_0, yaw, R)
+        a_x, a_y, a_z = (R.reshape(3, 3) @ self._approach).tolist()
+        return x + spin * a_x, y + spin * a_y, z + spin * a_z
 
     def step(self, q: Array, hand: Array, J: Array, asked: Array, out: Array) -> None:
         """See `step.step`."""
@@ -117,8 +152,10 @@ class Lean:
         c, s_ = x_h / l, y_h / l
         bearing = math.atan2(y_h, x_h)
         f, inside = task.yielding(ask[DELTA], setup[D]) if setup[D] > 0.0 else (0.0, 0.0)
-        T = self._task(bearing, bearing + f)
-        angle, e = self._apart(hand, bearing + f)
+        R_0 = asked[ATTITUDE:TURN]
+        T = self._task(bearing, R_0, bearing + f)
+        angle, e = self._apart(hand, R_0, bearing + f)
+        w_x, w_y, w_z = self._turning(R_0, bearing + f, asked)
         held = angle if T is None else math.hypot(*(T @ e).tolist()) / self._ell
         k_r = min(setup[K_R], TURN_BACK / max(held, 1e-9))
         e = (e[0] * k_r, e[1] * k_r, e[2] * k_r)
@@ -146,7 +183,7 @@ class Lean:
             base = [reach_for(*one) for one in zip(plan, was_base, step_base, strict=True)]
             real = _plus(_moved(ask, *base), slip)
             rate = inside * w_c + (1.0 - inside) * (c * u_y - s_ * u_x) / l
-            x = self._asks(T, (u_x, u_y, u_z), (0.0, 0.0, rate))
+            x = self._asks(T, (u_x, u_y, u_z), (part * w_x, part * w_y, part * w_z + rate))
             x_c = left_by(*real, e)
             scale, joint, dq = fit.fit(x, x_c)
             part_of_x, x_s = scale, x
@@ -190,10 +227,10 @@ class Lean:
             if setup[D] > 0.0:
                 turned_by = half_turn(bearing_1 - bearing) + (real[2] - scale * w_c) * dt
                 f_1, _ = task.yielding(half_turn(ask[DELTA] - turned_by), setup[D])
-            yaw_1 = bearing_1 + f_1
-            T_1 = self._task(bearing_1, yaw_1)
+            yaw_1, R_1 = bearing_1 + f_1, self._turned(R_0, bearing + f, asked, scale * part * dt)
+            T_1 = self._task(bearing_1, R_1, yaw_1)
             self._pose(q + np.array(dq) * dt, hand_1)
-            missing, size = self._missing(T_1, place, yaw_1, hand_1)
+            missing, size = self._missing(T_1, place, R_1, yaw_1, hand_1)
             if why != CHANGING:
                 if size > SMALL_TURN:
                     missing[3:] = [0.0] * (m - 3)
@@ -201,7 +238,7 @@ class Lean:
                 more = fit.more(missing, free if m <= sum(free) < n else None)
                 dq = within([one + x / dt for one, x in zip(dq, more, strict=True)], low, high, rates, change)
                 self._pose(q + np.array(dq) * dt, hand_1)
-                missing, size = self._missing(T_1, place, yaw_1, hand_1)
+                missing, size = self._missing(T_1, place, R_1, yaw_1, hand_1)
             off_v = math.sqrt(missing[0] ** 2 + missing[1] ** 2 + missing[2] ** 2) / dt
             off_w = size
             scale *= part
@@ -215,12 +252,13 @@ class Lean:
         if scale >= 1.0 and off_w > setup[TOL_W]:
             why, scale = OFF, NOT_WHOLE
         out[:n] = dq
-        out[n:] = (*base, scale, fit.sigma, joint, why, off_v, off_w, f)
+        out[n : n + HOLDS] = (*base, scale, fit.sigma, joint, why, off_v, off_w, f)
+        out[n + HOLDS :] = self._turned(R_0, bearing + f, asked, scale * dt)
 
-    def _missing(self, T: Array | None, place: Three, yaw: float, hand: Array) -> tuple[Floats, float]:
-        """See `step.missing`, for the attitude Rz(yaw) R_home."""
+    def _missing(self, T: Array | None, place: Three, R_0: Array, yaw: float, hand: Array) -> tuple[Floats, float]:
+        """See `step.missing`, for the attitude Rz(yaw) R_0."""
         x, y, z = hand[9:].tolist()
-        angle, e = self._apart(hand, yaw)
+        angle, e = self._apart(hand, R_0, yaw)
         missing = self._asks(T, (place[0] - x, place[1] - y, place[2] - z), e)
         folded = self._m == ONE_TURNING and angle > task.FOLDED
         return missing, angle if folded else math.hypot(*missing[3:]) / self._ell

@@ -56,12 +56,12 @@ class Manner(Record, frozen=True):
             return (0, 1, 2, 3, 4, 5)
         return (0, 1, 2, 4) if self.held & task.PITCH else (0, 1, 2)
 
-    def setup(self, R_home: Array) -> Array:
-        """Return what `step` takes, for a hand that has the attitude `R_home` (3, 3) at bearing 0."""
+    @property
+    def setup(self) -> Array:
+        """What `step` takes."""
         setup = np.empty(step.SETUP)
         setup[: step.APPROACH] = (
             self.held, self.ell, self.eps, NULL_GAIN, K_R, MARGIN, self.yaw, min(TOL_V * self.reach, MOST_V), TOL_W,
         )  # fmt: skip
-        setup[step.APPROACH : step.R_HOME] = self.approach
-        setup[step.R_HOME :] = R_home.ravel()
+        setup[step.APPROACH :] = self.approach
         return setup

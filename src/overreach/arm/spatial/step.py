@@ -2,7 +2,8 @@
 
 Scalar: to be compiled. Its twin with numpy is `lean.Lean`; both follow one specification, to 1e-9:
 
-    f         the hand's yaw past its bearing that is wanted; R = Rz(bearing + f) R_home is the reference attitude
+    f         the hand's yaw past its bearing that is wanted; R = Rz(bearing + f) R_0 is the reference attitude, R_0
+              the one that is held: home's at first, and then as it was turned
     base      what really happens: the plan, held to what its acceleration allows, and its slip
     x         s u, less what the base carries, plus K_R log(R R_hand^T): s is one scale for the whole command
     rates     `fit`; where s < 1, the base is scaled as well and the arm solved again
@@ -22,14 +23,18 @@ import numpy as np
 
 from overreach.arm.spatial.asked import (
     ASKED,
+    ATTITUDE,
     DELTA,
     DT,
     PLAN,
     SLIP,
+    SPIN,
     STEP,
+    TURN,
     W_C,
     WAS,
     U,
+    and_turning,
     goal,
     happens,
     left_by,
@@ -42,19 +47,18 @@ from overreach.arm.spatial.inverse import damping_beside, inverse_beside, rates
 from overreach.arm.spatial.room import CHANGE, NULL_SPEED, SPEED, WEIGHT, bounds, downhill
 from overreach.arm.spatial.screws import Array, forward
 from overreach.arm.spatial.task import FOLDED, count, held_part, product, rows, yielding
-from overreach.arm.spatial.turning import apart, yawed
+from overreach.arm.spatial.turning import apart, turned_on, yawed
 
 HELD, ELL, EPS, NULL_GAIN, K_R, MARGIN, D, TOL_V, TOL_W = range(9)
-APPROACH, R_HOME = 9, 12
-SETUP = 21
+APPROACH, SETUP = 9, 12
 """What is fixed for an arm and its orientation mode, in `setup`: the turnings that are held, length ell [m], eps [m/s],
 gains [1/s], margin [rad, m], the greatest deviation D of a fixed yaw [rad] (0: the bearing is followed), tolerances
-[m/s, rad]; then the approach axis in the hand's frame (3), the hand's attitude at bearing 0, by rows (9); behind them,
-for `step`, the tip (12): see `screws`."""
+[m/s, rad]; then the approach axis in the hand's frame (3); behind them, for `step`, the tip (12): see `screws`."""
 
-BASE, SCALE, SIGMA, JOINT, WHY, OFF_V, OFF_W, YAW, DONE = 0, 3, 4, 5, 6, 7, 8, 9, 10
+BASE, SCALE, SIGMA, JOINT, WHY, OFF_V, OFF_W, YAW, HOLDS, DONE = 0, 3, 4, 5, 6, 7, 8, 9, 10, 19
 """What is answered, in `out`, behind the n joint rates: the base twist to write (3), scale, sigma [m/s], the joint that
-limits (-1: none), why, error at the period's end [m/s], of the attitude [rad], and f [rad]."""
+limits (-1: none), why, error at the period's end [m/s], of the attitude [rad], f [rad], and the attitude that is held
+at bearing 0 from then on, by rows (9)."""
 FINE, AT_LIMIT, AT_SPEED, CHANGING, STUCK, OFF = range(6)
 """Why a command is scaled: a joint's limit, a joint's speed, its acceleration, nothing fits, the hand would be off."""
 
@@ -116,7 +120,7 @@ def step(
     m = count(held)
     # A few blocks rather than many small ones: asking for memory is a third of the cost of all this.
     of_task, of_joints = np.empty((2, m, 6)), np.empty((11, n))
-    of_rows, of_space, poses = np.empty((2, m)), np.empty((10, 3)), np.empty((2, 12))
+    of_rows, of_space, poses = np.empty((2, m)), np.empty((11, 3)), np.empty((4, 12))
     A, B, J_1, places = np.empty((m, n)), np.empty((m, m)), np.empty((6, n)), np.empty((n, 3))
     T, T_1, x, x_c = of_task[0], of_task[1], of_rows[0], of_rows[1]
     low, high, soft_low, soft_high = of_joints[0], of_joints[1], of_joints[2], of_joints[3]
@@ -124,9 +128,9 @@ def step(
     free, w = of_joints[9], of_joints[10]
     e, place, none, base, real = of_space[0], of_space[1], of_space[2], of_space[3], of_space[4]
     plan, slip, u, polar, off = of_space[5], of_space[6], of_space[7], of_space[8], of_space[9]
-    hand_1, R = poses[0], poses[1, :9]
+    turning, hand_1, R, R_1, E = of_space[10], poses[0], poses[1, :9], poses[2, :9], poses[3, :9]
     none[:] = 0.0
-    R_home, approach, tip = setup[R_HOME:SETUP], setup[APPROACH:R_HOME], setup[SETUP:]
+    R_0, approach, tip = asked[ATTITUDE:TURN], setup[APPROACH:SETUP], setup[SETUP:]
     was = asked[ASKED:]
     ell, eps = setup[ELL], setup[EPS]
     moved_with(asked, asked[SLIP : SLIP + 3], slip)
@@ -138,7 +142,10 @@ def step(
     f, inside = 0.0, 0.0
     if setup[D] > 0.0:
         f, inside = yielding(asked[DELTA], setup[D])
-    yawed(R_home, bearing + f, R)
+    yawed(R_0, bearing + f, R)
+    for i in range(3):
+        a_i = R[3 * i] * approach[0] + R[3 * i + 1] * approach[1] + R[3 * i + 2] * approach[2]
+        turning[i] = asked[TURN + i] + asked[SPIN] * a_i
     apart(R, hand, e)
     rows(held, bearing, R, approach, ell, T)
     k_r = min(setup[K_R], TURN_BACK / max(held_part(T, ell, e), 1e-9))
@@ -166,6 +173,7 @@ def step(
         happens(asked, base, slip, real)
         bearing_rate = (polar[0] * u[1] - polar[1] * u[0]) / polar[2]
         task_of(T, u[0], u[1], u[2], inside * w_c + (1.0 - inside) * bearing_rate, x)
+        and_turning(T, part, turning, x)
         left_by(T, real, hand, polar, inside, e, x_c)
         s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
         part_of_x = s
@@ -188,6 +196,7 @@ def step(
                     T, s_base * u[0], s_base * u[1], s_base * u[2],
                     s_base * (inside * w_c + (1.0 - inside) * bearing_rate), x,
                 )  # fmt: skip
+                and_turning(T, s_base * part, turning, x)
                 left_by(T, real, hand, polar, inside, e, x_c)
                 again, sigma, other = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
                 part_of_x = again
@@ -222,7 +231,8 @@ def step(
         if setup[D] > 0.0:
             turned_by = half_turn(bearing_1 - bearing) + (real[2] - s * w_c) * dt
             f_1, _ = yielding(half_turn(asked[DELTA] - turned_by), setup[D])
-        yawed(R_home, bearing_1 + f_1, R)
+        turned_on(R_0, bearing + f, asked[TURN:SPIN], asked[SPIN], approach, s * part * dt, E, R_1)
+        yawed(R_1, bearing_1 + f_1, R)
         rows(held, bearing_1, R, approach, ell, T_1)
         for k in range(n):
             q_1[k] = q[k] + dq[k] * dt
@@ -266,3 +276,4 @@ def step(
         s = NOT_WHOLE
     out[n + SCALE], out[n + SIGMA], out[n + JOINT], out[n + WHY] = s, sigma, joint, why
     out[n + OFF_V], out[n + OFF_W], out[n + YAW] = off_v, off_w, f
+    turned_on(R_0, bearing + f, asked[TURN:SPIN], asked[SPIN], approach, s * dt, E, out[n + HOLDS :])

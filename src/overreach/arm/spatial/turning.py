@@ -57,6 +57,46 @@ def half_turn(goal: Array, is_: Array, angle: float, out: Array) -> None:
     out[0], out[1], out[2] = size * out[0], size * out[1], size * out[2]
 
 
+def rotation(x: float, y: float, z: float, out: Array) -> None:
+    """Write the rotation by the vector (x, y, z) [rad] into `out` (9,)."""
+    square = x * x + y * y + z * z
+    if square < SLIGHT:
+        a, b = 1.0 - square / 6.0, 0.5 - square / 24.0
+    else:
+        angle = math.sqrt(square)
+        a, b = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
+    out[0], out[4], out[8] = 1.0 - b * (y * y + z * z), 1.0 - b * (x * x + z * z), 1.0 - b * (x * x + y * y)
+    out[1], out[3] = b * x * y - a * z, b * x * y + a * z
+    out[2], out[6] = b * x * z + a * y, b * x * z - a * y
+    out[5], out[7] = b * y * z - a * x, b * y * z + a * x
+
+
+def turned_on(R: Array, yaw: float, w: Array, spin: float, approach: Array, dt: float, E: Array, out: Array) -> None:
+    """Write exp(dt w') R exp(dt spin a) into `out`: R (9,), turned at w [rad/s] (3,), and about its own axis a.
+
+    w' is w seen from axes that are turned by `yaw` [rad]; E (9,) is overwritten.
+    """
+    for i in range(9):
+        out[i] = R[i]
+    if w[0] != 0.0 or w[1] != 0.0 or w[2] != 0.0:
+        c, s = math.cos(yaw), math.sin(yaw)
+        rotation(dt * (c * w[0] + s * w[1]), dt * (c * w[1] - s * w[0]), dt * w[2], E)
+        for k in range(3):
+            a, b, d = out[k], out[3 + k], out[6 + k]
+            for i in range(3):
+                out[3 * i + k] = E[3 * i] * a + E[3 * i + 1] * b + E[3 * i + 2] * d
+    if spin != 0.0:
+        rotation(dt * spin * approach[0], dt * spin * approach[1], dt * spin * approach[2], E)
+        for i in range(3):
+            a, b, d = out[3 * i], out[3 * i + 1], out[3 * i + 2]
+            for k in range(3):
+                out[3 * i + k] = a * E[k] + b * E[3 + k] + d * E[6 + k]
+
+
+SLIGHT = 1e-8
+"""Square of an angle [rad^2] below which its sine is taken by the series."""
+
+
 def yawed(R: Array, yaw: float, out: Array) -> None:
     """Write Rz(yaw) R, yaw [rad], into `out`; both are (9,)."""
     c, s = math.cos(yaw), math.sin(yaw)
