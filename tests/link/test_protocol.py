@@ -24,7 +24,7 @@ FINGERPRINTS = {
     3: "df4c228980fe815f",
     4: "0ad8f1bee0b373b8",
     5: "60d5d345c4cab49f",
-    6: "cf8c6fe3be8d5564",
+    6: "5d211e1676af9b8e",
 }
 """Protocol -> what its messages are, docstrings included: what a field means stands there."""
 

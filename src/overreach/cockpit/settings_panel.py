@@ -43,7 +43,7 @@ class SettingsPanel:
             ui.html("<h2>Settings</h2>", sanitize=False)
             self._law = self._select("law", "Law", self._laws(shown))
             self._parameters("law", welcome.laws)
-            self._frame = self._toggle("frame", "Command frame", [frame.value for frame in Frame])
+            self._frame = self._toggle("frame", "Command frame", list(welcome.axes))
             self._blend = self._toggle("blend", "Blend", list(welcome.blends))
             self._parameters("blend", welcome.blends)
             self._speed = self._slider(
@@ -61,8 +61,8 @@ class SettingsPanel:
     def differs(self, welcome: Welcome) -> bool:
         """Say whether another robot side offers other things to choose from."""
         own = self.welcome
-        return (own.laws, own.blends, own.reach, own.defaults) != (
-            welcome.laws, welcome.blends, welcome.reach, welcome.defaults,
+        return (own.laws, own.blends, own.reach, own.defaults, own.axes) != (
+            welcome.laws, welcome.blends, welcome.reach, welcome.defaults, welcome.axes,
         )  # fmt: skip
 
     @staticmethod

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from math import cos, sin
 
+from overreach.arm.chain import Arm, governs
 from overreach.types import Frame, HandTwist, Twist
 
 CommandFrame = Callable[[float, float, float], float]
@@ -92,6 +93,11 @@ def heading_rate(frame: Frame, w_z: float) -> float | None:
 def axes(frame: Frame) -> tuple[str, str]:
     """Return the twist components that a two-axis stick, forward and leftward, commands in `frame`."""
     return ("v_x", "w_z") if frame in (Frame.HAND, Frame.POLAR) else ("v_x", "v_y")
+
+
+def frames_of(arm: Arm) -> tuple[Frame, ...]:
+    """Return the frames in which the hand of `arm` can be commanded: along its own axes where it has an attitude."""
+    return tuple(frame for frame in Frame if frame is not Frame.TOOL or governs(arm))
 
 
 def of_two(frame: Frame, forward: float, left: float) -> Twist:

@@ -150,16 +150,16 @@ class State(Record, frozen=True):
     """What the robot side tells, at least 50 times a second.
 
     t [s]: on the robot side's monotonic clock; tick: number of the period; operator: who has armed; ack, seen: seq
-    of their last accepted command, and the `t` of the state that they had heard of when sending it; heard: seq of the
-    newest that came from them, accepted or not; age [s]: how old that was when it came. verdict, word,
+    of their last accepted command, and the `t` of the state that they had heard of when sending it; heard: seq of
+    the newest that came from them, accepted or not; age [s]: how old that was when it came. verdict, word,
     sentence, look: as in `verdicts`; scale: the part of the command that is carried out; stopped: whether it is
     stopped or faulted, so that only a reset leads out. twist, in `frame`, and gripper: the command that the gate
-    let through; forward [rad]: where x of the frame in the settings points, as a heading in the world. l, psi,
-    theta_e, mu, sigma, v_m, w_m and base: as in `types`; pose: of the base; joints [rad, m]; hand: its position in
-    the world [m]; velocity: its true velocity in the world [m/s]; links: the arm as a line through points in the
-    world [m]. State at t, rates from t on. Of the last second: late_p50, late_p99, late_max [us]: how late the loop's
-    ticks began; apart_p99, apart_max [us]: by how much more than a period two writes were apart. revision: another
-    number after every change of the settings and every start.
+    let through, opening: the gripper's own, 0 to 1; forward [rad]: where x of the frame in the settings points, as
+    a heading in the world. l, psi, theta_e, mu, sigma, v_m, w_m and base: as in `types`; pose: of the base; joints
+    [rad, m]; hand: its position in the world [m]; velocity: its true velocity in the world [m/s]; links: the arm as
+    a line through points in the world [m]. State at t, rates from t on. Of the last second: late_p50, late_p99,
+    late_max [us]: how late the loop's ticks began; apart_p99, apart_max [us]: by how much more than a period two
+    writes were apart. revision: another number after every change of the settings and every start.
     """
 
     t: float
@@ -180,6 +180,7 @@ class State(Record, frozen=True):
     frame: Frame
     forward: float
     gripper: float | None
+    opening: float
     l: float
     psi: float
     theta_e: float

@@ -70,6 +70,7 @@ class Reporter:
             frame=tick.gated.frame,
             forward=FRAMES[frame](bearing, heading, polar.theta_e) + bearing + heading,
             gripper=tick.gripper,
+            opening=state.gripper,
             l=polar.l,
             psi=polar.psi,
             theta_e=polar.theta_e,

@@ -10,10 +10,9 @@ import msgspec
 from overreach import __version__
 from overreach.control.pilot import Pilot, obeys
 from overreach.gate.gate import STALE_S
-from overreach.law.frame import axes
+from overreach.law.frame import axes, frames_of
 from overreach.link.messages import PROTOCOL, Settings, Welcome, encode
 from overreach.robot_side.settings import Built, blends_to_choose, laws_to_choose
-from overreach.types import Frame
 
 REVISION_BITS = 48
 """Revisions fit into a JavaScript number."""
@@ -43,7 +42,7 @@ class Reception:
             limits=self._pilot.gate.limits,
             reach=model.arm.reach,
             obeys=tuple(sorted(obeys(model))),
-            axes={frame.value: axes(frame) for frame in Frame},
+            axes={frame.value: axes(frame) for frame in frames_of(model.arm)},
             stop_time=STALE_S + 1.0 / self._rate + self._pilot.controller.guard.stop_s,
             max_delay=self._pilot.gate.max_delay,
             simulated=self._simulated,

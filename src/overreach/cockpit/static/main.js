@@ -39,7 +39,9 @@ const link = new Link({
   welcome(robot, settings, scene) {
     page.robot = robot;
     const { v_c, w_c, v_z } = robot.limits;
-    stick.most = { v_x: v_c, v_y: v_c, w_z: w_c, v_z: robot.obeys.includes("v_z") ? v_z : 0 };
+    const most = { v_x: v_c, v_y: v_c, v_z, w_x: w_c, w_y: w_c, w_z: w_c };
+    for (const part of Object.keys(most)) stick.most[part] = robot.obeys.includes(part) ? most[part] : 0;
+    stick.grips = robot.obeys.includes("gripper");
     panel.welcome(robot);
     configure(settings, scene);
   },
@@ -47,6 +49,7 @@ const link = new Link({
   state(state) {
     page.state = state;
     page.heard = performance.now();
+    stick.opening = state.opening;
     view.show(state);
     plots.add(state);
   },

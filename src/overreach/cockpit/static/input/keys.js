@@ -1,4 +1,5 @@
-// Arrow keys and W A S D; E and Q, or Page Up and Down, for the height. Shift is a quarter of the speed. A held key is the dead-man.
+// Arrow keys and W A S D; E and Q, or Page Up and Down, for the height; I K, J L and U O turn the hand; B and G open and
+// close it. Shift is a quarter of the speed. A held key is the dead-man.
 
 const WAYS = {
   ArrowUp: [0, 1], KeyW: [0, 1],
@@ -6,7 +7,14 @@ const WAYS = {
   ArrowLeft: [-1, 0], KeyA: [-1, 0],
   ArrowRight: [1, 0], KeyD: [1, 0],
 };
-const UP = { KeyE: 1, PageUp: 1, KeyQ: -1, PageDown: -1 };
+// Beside them: [part of the twist or gripper, which way]. "third" is what the two axes leave out, of v_y and w_z.
+const MORE = {
+  KeyE: ["v_z", 1], PageUp: ["v_z", 1], KeyQ: ["v_z", -1], PageDown: ["v_z", -1],
+  KeyI: ["w_y", -1], KeyK: ["w_y", 1],
+  KeyJ: ["w_x", -1], KeyL: ["w_x", 1],
+  KeyU: ["third", 1], KeyO: ["third", -1],
+  KeyB: ["gripper", 1], KeyG: ["gripper", -1],
+};
 const SLOW = 0.25;
 
 // A field in which a Space or a letter is written. A list to choose from has a field, too, but only to be found by.
@@ -22,7 +30,7 @@ const isStop = ({ code, key, target }) => code === "Escape" || key === "Escape" 
 
 export function attachKeys(stick, buttons) {
   const down = new Set();
-  const up = new Set();
+  const more = new Set();
   let slow = false; // as the newest event has it: no key of its own is kept track of
 
   const steer = () => {
@@ -35,23 +43,28 @@ export function attachKeys(stick, buttons) {
     const size = Math.max(1, Math.hypot(x, y)) / (slow ? SLOW : 1);
     return [x / size, y / size];
   };
-  const raise = () => {
-    let z = 0;
-    for (const key of up) z += UP[key];
-    if (!up.size) stick.lower("height keys");
-    else if (!stick.lift("height keys", z * (slow ? SLOW : 1))) up.clear();
+  const part = (key) => {
+    const [name] = MORE[key];
+    return name === "third" ? (stick.axes.includes("w_z") ? "v_y" : "w_z") : name;
+  };
+  const has = (key) => (part(key) === "gripper" ? stick.grips : stick.most[part(key)] > 0);
+  const turn = () => {
+    const parts = {};
+    for (const key of more) parts[part(key)] = (parts[part(key)] ?? 0) + MORE[key][1] * (slow ? SLOW : 1);
+    if (!more.size) stick.without("more keys");
+    else if (!stick.also("more keys", parts)) more.clear();
   };
   const letGo = () => {
     down.clear();
-    up.clear();
-    stick.lower("height keys");
+    more.clear();
+    stick.without("more keys");
     stick.release("keys");
   };
   const shift = (event) => {
     if (event.shiftKey === slow) return;
     slow = event.shiftKey;
     if (down.size) stick.move("keys", ...steer());
-    if (up.size) raise();
+    if (more.size) turn();
   };
   const act = {
     Enter: (event) => event.target.tagName !== "BUTTON" && buttons.arm(),
@@ -77,11 +90,11 @@ export function attachKeys(stick, buttons) {
       down.add(key);
       if (stick.holder === "keys") stick.move("keys", ...steer());
       else if (!stick.press("keys", ...steer(), false)) down.clear();
-    } else if (UP[key] && stick.most.v_z) {
+    } else if (MORE[key] && has(key)) {
       event.preventDefault();
       if (event.repeat) return;
-      up.add(key);
-      raise();
+      more.add(key);
+      turn();
     } else if (event.repeat) return;
     else if (act[key]) act[key](event);
     else if (event.key === "+" || event.key === "=") buttons.zoom(1.25);
@@ -90,7 +103,7 @@ export function attachKeys(stick, buttons) {
   window.addEventListener("keyup", (event) => {
     shift(event);
     if (isStop(event)) event.preventDefault(); // some browsers press the button that has the focus only now
-    if (up.delete(named(event))) return raise();
+    if (more.delete(named(event))) return turn();
     if (!down.delete(named(event))) return;
     if (down.size) stick.move("keys", ...steer());
     else stick.release("keys");
@@ -99,5 +112,8 @@ export function attachKeys(stick, buttons) {
   for (const event of ["blur", "pagehide", "offline", "contextmenu"]) window.addEventListener(event, letGo);
   document.addEventListener("visibilitychange", () => document.hidden && letGo());
   // If anything else ends the hold, it ends for the keys that are down, too.
-  stick.listeners.push(() => stick.holder === "keys" || down.clear());
+  stick.listeners.push(() => {
+    if (stick.holder !== "keys") down.clear();
+    if (!stick.extras.has("more keys")) more.clear();
+  });
 }

@@ -10,12 +10,12 @@ export function attachLift(stick, lift) {
 
   const place = (event) => {
     const { top, height } = hold.box;
-    return -(event.clientY - top - height / 2) / ((height / 2) * REACH);
+    return Math.max(-1, Math.min(1, -(event.clientY - top - height / 2) / ((height / 2) * REACH)));
   };
   const end = (doubt = "") => {
     if (!hold) return;
     hold = null;
-    stick.lower("lift", doubt);
+    stick.without("lift", doubt);
   };
   const inDoubt = () => {
     if (!hold) return false;
@@ -35,10 +35,10 @@ export function attachLift(stick, lift) {
     } catch {
       return (hold = null); // the pointer is gone already
     }
-    if (!stick.lift("lift", place(event))) hold = null;
+    if (!stick.also("lift", { v_z: place(event) })) hold = null;
   });
   lift.addEventListener("pointermove", (event) => {
-    if (event.pointerId === hold?.pointer && !inDoubt()) stick.lift("lift", place(event));
+    if (event.pointerId === hold?.pointer && !inDoubt()) stick.also("lift", { v_z: place(event) });
   });
   for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
     lift.addEventListener(name, (event) => event.pointerId === hold?.pointer && end());
@@ -48,9 +48,10 @@ export function attachLift(stick, lift) {
   window.addEventListener("keydown", (event) => ["Control", "Alt", "AltGraph", "Meta"].includes(event.key) && end(), true);
 
   stick.listeners.push(() => {
-    if (stick.lifter !== "lift") hold = null;
-    lift.dataset.held = stick.lifter !== null;
-    lift.setAttribute("aria-valuenow", stick.z.toFixed(2));
-    knob.style.top = `calc(${(50 - stick.z * REACH * 40).toFixed(1)}% - 29px)`;
+    if (!stick.extras.has("lift")) hold = null;
+    const z = stick.extra("v_z");
+    lift.dataset.held = hold !== null || z !== 0;
+    lift.setAttribute("aria-valuenow", z.toFixed(2));
+    knob.style.top = `calc(${(50 - z * REACH * 40).toFixed(1)}% - 29px)`;
   });
 }

@@ -9,19 +9,24 @@ const APART_MS = 1000 / 57; // with what may be saved up, no second has more tha
 const AWAY_MOST = 3; // messages on their way
 const SAVED_MOST = 3; // messages that may follow each other at once after a while with fewer
 const AGAIN_MS = [20, 60]; // a release is said again
+const SQUEEZE_S = 1.5; // from open to closed
+
+const within = (value, most = 1) => Math.max(-most, Math.min(most, value));
 
 export class Stick {
   constructor(link) {
     this.link = link;
     this.frame = "hand"; // sent with every message: what the two axes mean
     this.axes = ["v_x", "w_z"]; // forward, leftward: parts of the twist in that frame
-    this.most = { v_x: 0, v_y: 0, w_z: 0, v_z: 0 }; // at full deflection
+    this.most = { v_x: 0, v_y: 0, v_z: 0, w_x: 0, w_y: 0, w_z: 0 }; // at full deflection; 0: the robot has no such motion
+    this.grips = false; // whether it has a gripper
+    this.opening = 0; // of the gripper, 0 to 1, as it was told last
     this.expo = USUAL_EXPO;
     this.barred = ""; // why nobody may take hold from here
     this.grip = 0;
     this.holder = null;
-    this.lifter = null; // the input that moves the hand up or down; it holds alone where nothing else does
-    this.z = 0; // up, -1 to 1
+    this.extras = new Map(); // input -> what it moves beside the two axes, each -1 to 1; one holds alone where nothing else does
+    this.gripper = null; // the opening that is wanted, 0 to 1, while an input moves it
     this.x = 0; // right, -1 to 1: where it is
     this.y = 0; // up, -1 to 1
     this.curved = false; // whether the curve is applied to it
@@ -51,12 +56,21 @@ export class Stick {
   get scale() {
     return this.curved ? factor(Math.hypot(this.x, this.y), this.expo) : 1;
   }
+  // How far the inputs beside the two axes move a part of the twist, or the gripper, -1 to 1.
+  extra(part) {
+    let sum = 0;
+    for (const parts of this.extras.values()) sum += parts[part] ?? 0;
+    return within(sum);
+  }
   get upward() {
-    return this.z * this.most.v_z;
+    return this.extra("v_z") * this.most.v_z;
   }
   get twist() {
     const twist = { [this.axes[0]]: brief(this.forward), [this.axes[1]]: brief(this.leftward) };
-    if (this.z) twist.v_z = brief(this.upward);
+    for (const part of Object.keys(this.most)) {
+      const more = this.extra(part) * this.most[part];
+      if (more) twist[part] = brief(within((twist[part] ?? 0) + more, this.most[part]));
+    }
     return twist;
   }
 
@@ -86,41 +100,37 @@ export class Stick {
     this.y = y / size;
   }
 
-  // Move up or down, beside whatever moves the hand along the ground, or alone; returns whether that was allowed.
-  lift(lifter, z) {
+  // Move more parts, beside whatever moves the two axes, or alone; returns whether that was allowed.
+  also(by, parts) {
     const alone = !this.held;
-    this.lifter = lifter;
-    this.z = Math.max(-1, Math.min(1, z));
+    this.extras.set(by, parts);
     if (!alone) this.say();
-    else if (!this.press(lifter, 0, 0, false)) {
-      this.lifter = null;
-      this.z = 0;
+    else if (!this.press(by, 0, 0, false)) {
+      this.extras.delete(by);
       return false;
     }
     return true;
   }
 
-  // Up and down alone are let go: what is held along the ground goes on.
-  lower(lifter, doubt = "") {
-    if (this.lifter !== lifter) return;
-    this.lifter = null;
-    this.z = 0;
-    if (this.holder === lifter || doubt) this.release(this.holder, doubt);
+  // These parts alone are let go: what else is held goes on.
+  without(by, doubt = "") {
+    if (!this.extras.delete(by)) return;
+    if (this.holder === by || doubt) this.release(this.holder, doubt);
     else this.say(true);
   }
 
-  // Let go. doubt: why, where it was not the operator's own doing. Whoever still moves it up or down then holds alone.
+  // Let go. doubt: why, where it was not the operator's own doing. Whoever still moves other parts then holds alone.
   release(holder = this.holder, doubt = "") {
     if (this.holder === null || this.holder !== holder) return;
-    const others = arguments.length > 0 && !doubt && this.lifter !== null && this.lifter !== holder;
+    this.extras.delete(holder);
     this.x = this.y = 0;
-    if (others) {
-      this.holder = this.lifter;
+    if (arguments.length > 0 && !doubt && this.extras.size) {
+      [this.holder] = this.extras.keys();
       this.say(true);
       return;
     }
-    this.holder = this.lifter = null;
-    this.z = 0;
+    this.holder = null;
+    this.extras.clear();
     this.say(true);
     for (const ms of AGAIN_MS) setTimeout(() => !this.held && this.say(), ms);
     if (doubt) for (const listener of this.lost) listener(doubt);
@@ -159,12 +169,22 @@ export class Stick {
 
   send() {
     const now = performance.now();
+    this.squeeze(Math.min(100, now - this.last) / 1000);
     this.left = Math.max(0, this.saved(now - this.last) - 1);
     this.last = now;
     this.due = false;
     const { grip, held, twist, frame } = this;
     const seen = this.link.t;
-    this.link.sendNumbered({ type: "command", grip, held, twist, frame, seen });
+    const message = { type: "command", grip, held, twist, frame, seen };
+    if (this.gripper !== null) message.gripper = brief(this.gripper);
+    this.link.sendNumbered(message);
+  }
+
+  // Open or close the gripper a little further, from where it is.
+  squeeze(seconds) {
+    const way = this.grips ? this.extra("gripper") : 0;
+    if (way) this.gripper = Math.max(0, Math.min(1, (this.gripper ?? this.opening) + (way * seconds) / SQUEEZE_S));
+    else this.gripper = null;
   }
 }
 

@@ -34,6 +34,7 @@ export class Panel {
     this.maxDelay = (robot.max_delay * 1000).toFixed(0);
     $("restart").hidden = !robot.simulated;
     $("lift").hidden = $("height").hidden = !robot.obeys.includes("v_z");
+    $("gripper").hidden = !robot.obeys.includes("gripper");
   }
 
   show(s, operator) {
@@ -72,6 +73,7 @@ export class Panel {
     const [x, y] = s.hand;
     put($("r-hand"), `${signed(x)}, ${signed(y)} m`);
     put($("r-height"), `${signed(s.hand[2])} m`);
+    put($("r-gripper"), `${(s.opening * 100).toFixed(0)} % open`);
     put($("r-base"), `${signed(s.pose.x)}, ${signed(s.pose.y)} m · ${signed((s.pose.heading * 180) / Math.PI, 0)}°`);
     put($("r-speed"), `${Math.hypot(...s.velocity).toFixed(2)} m/s`);
     put($("r-refused"), `${s.refused}`);
