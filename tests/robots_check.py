@@ -1,6 +1,7 @@
-"""`python -m tests.robots_check STREAMS FILE`: every robot that we know, in and across its workspace, with seeds.
+"""`python -m tests.robots_check STREAMS FILE [ROBOT ...]`: every robot that we know, in and across its workspace.
 
-What they came to goes into FILE, with commit and seeds, and from there into docs/robots.md.
+With three seeds. What they came to goes into FILE, with commit and seeds, and from there into docs/robots.md. Where
+robots are named, these alone are checked, and take the place of what FILE says of them.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ import json
 import os
 import platform
 import sys
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +23,14 @@ from overreach.model.described import DescribedRobot
 from overreach.model.workspace import Workspace
 from overreach.plugs import load_model
 from tests.reached import commit
+from tests.ur5 import written
 
 ROOT = Path(__file__).parents[1]
 FILE, PAGE = ROOT / "build" / "robots.json", ROOT / "docs" / "robots.md"
 BEGIN, END = "<!-- robots-check: begin -->", "<!-- robots-check: end -->"
-ROBOTS = ("tiago", "tiago#fixed", "mobile7", "mobile7#fixed", "mobile4")
+SHOULDERS = {"ur5-ahead": 0.25, "ur5-over": 0.0, "ur5-behind": -0.3}
+"""An arm of six joints, of the size of a UR5: where its shoulder is, ahead of the axle [m]."""
+ROBOTS = ("tiago", "tiago#fixed", "mobile7", "mobile7#fixed", "mobile4", "omni7", "omni7#fixed", "omni5", *SHOULDERS)
 SEEDS = (1, 2, 3)
 GUESSES = {"cautious": (0.55, 0.9, 0.8, 0.2), "usual": (0.4, 0.95, 1.0, 0.35)}
 """Workspaces guessed from a data sheet: l from and to, in parts of R; psi [rad] either way; z about home, likewise."""
@@ -71,12 +77,13 @@ def table(report: dict[str, Any]) -> str:
             f"| {one['ok_share']:.4f} | {one['streams_all_ok']} of {one['streams']} |"
         )
     everything = [*found, *report["guessed"]]
+    differential = [one for one in found if not one["omni"]]
     rows += [
         "",
         f"Joint limits passed: {sum(one['joint_limit_violations'] for one in found)}; contacts with itself: "
         f"{sum(one['self_contacts'] for one in found)} ({sum(one['self_contacts'] for one in everything)} with the "
-        f"guesses); sideways velocity of the base: {max(one['lateral_base_max'] for one in found):g} m/s; base path of "
-        f"a reach inside: {max(one['reach_base_path'] for one in found):g} m.",
+        f"guesses); sideways velocity of a differential base: {max(one['lateral_base_max'] for one in differential):g} "
+        f"m/s; base path of a reach inside: {max(one['reach_base_path'] for one in found):g} m.",
     ]
     return "\n".join(rows)
 
@@ -88,31 +95,57 @@ def parts(page: str) -> tuple[str, str, str]:
     return before, shown.strip("\n"), after
 
 
-def main() -> None:
-    """Check each robot with each seed, smooth streams and stick steps, and write what they came to."""
-    streams, path = int(sys.argv[1]), Path(sys.argv[2])
-    if "MENAGERIE_ROOT" not in os.environ:
-        print("MENAGERIE_ROOT is not set: tiago is downloaded, if it can be", file=sys.stderr)
-    found = []
-    for robot in ROBOTS:
-        for seed in SEEDS:
-            for kind in ("smooth", "steps"):
-                one = check(robot, streams, seed, kind)
-                found.append(msgspec.to_builtins(one))
-                print(f"{robot:<14} seed {seed} {kind:<7} {said(one, streams)}", flush=True)
-    guessed = []
-    few = max(1, streams // 5)
+def checked(robots: Sequence[str], streams: int) -> list[dict[str, Any]]:
+    """Check each robot with each seed, smooth streams and stick steps."""
+    found, at = [], commit()
+    with tempfile.TemporaryDirectory() as folder:
+        for robot in robots:
+            which = robot
+            if robot in SHOULDERS:
+                own = Path(folder) / robot
+                own.mkdir()
+                which = written(own, SHOULDERS[robot], name=robot)
+            for seed in SEEDS:
+                for kind in ("smooth", "steps"):
+                    one = check(which, streams, seed, kind)
+                    found.append({"commit": at, **msgspec.to_builtins(one)})
+                    print(f"{robot:<14} seed {seed} {kind:<7} {said(one, streams)}", flush=True)
+    return found
+
+
+def guessed(streams: int) -> list[dict[str, Any]]:
+    """Drive in workspaces that are guessed."""
+    found, at = [], commit()
     for robot in ("tiago", "mobile7"):
         model = load_model(robot)
         assert isinstance(model, DescribedRobot)
         R, z = model.arm.manner.reach, model.arm.posture_at_home.z
         for name, (near, far, wide, high) in GUESSES.items():
             guess = Workspace(near * R, far * R, -wide, wide, z - high * R, z + high * R, edges=True)
-            one = check(robot, few, SEEDS[0], guess=guess)
-            guessed.append({"guess": name, "workspace": msgspec.to_builtins(guess), **msgspec.to_builtins(one)})
-            print(f"{robot:<14} {name} guess: {said(one, few)}", flush=True)
-    machine = f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}"
-    report = {"commit": commit(), "machine": machine, "found": found, "guessed": guessed}
+            one = check(robot, streams, SEEDS[0], guess=guess)
+            own = {"commit": at, "guess": name, "workspace": msgspec.to_builtins(guess)}
+            found.append({**own, **msgspec.to_builtins(one)})
+            print(f"{robot:<14} {name} guess: {said(one, streams)}", flush=True)
+    return found
+
+
+def order(one: dict[str, Any]) -> int:
+    """Return where a robot in a mode stands in the list."""
+    return ROBOTS.index(one["robot"] + ("" if one["mode"] == "follow" else f"#{one['mode']}"))
+
+
+def main() -> None:
+    """Check, write what the robots came to, and the page from it."""
+    streams, path, robots = int(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:]
+    if "MENAGERIE_ROOT" not in os.environ:
+        print("MENAGERIE_ROOT is not set: tiago is downloaded, if it can be", file=sys.stderr)
+    if robots:
+        report = json.loads(path.read_text("utf-8"))
+        kept = [one for one in report["found"] if ROBOTS[order(one)] not in robots]
+        report["found"] = sorted([*kept, *checked(robots, streams)], key=order)
+    else:
+        machine = f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}"
+        report = {"machine": machine, "found": checked(ROBOTS, streams), "guessed": guessed(max(1, streams // 5))}
     write_text(path, json.dumps(report, indent=1) + "\n")
     if path.resolve() == FILE:
         before, _, after = parts(PAGE.read_text("utf-8"))

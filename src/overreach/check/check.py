@@ -30,8 +30,9 @@ class Found(Record, frozen=True):
     """What `streams` of a kind came to. ok: steps whose scale is 1 and whose error, by kinematics, is in bounds.
 
     Errors [m/s, rad] are those of OK steps; base_share: part of the time in which the base has most of the motion;
-    crossings: of the middles of the blends, a stream; out_l, out_psi, out_z [m, rad, m]: beyond the outer edges of the
-    workspace at most; reach_base_path [m]: how far the base went for a reach of REACH_M inside the workspace.
+    omni: whether the base moves sideways too; crossings: of the middles of the blends, a stream; out_l, out_psi,
+    out_z [m, rad, m]: beyond the outer edges of the workspace at most; reach_base_path [m]: how far the base went
+    for a reach of REACH_M inside the workspace.
     """
 
     robot: str
@@ -56,6 +57,7 @@ class Found(Record, frozen=True):
     min_joint_gap: float
     self_contacts: int
     lateral_base_max: float
+    omni: bool
     out_l: float
     out_psi: float
     out_z: float
@@ -131,6 +133,7 @@ def check(
         min_joint_gap=min(one.gap for one in each),
         self_contacts=sum(one.contacts for one in each),
         lateral_base_max=max(one.lateral for one in each),
+        omni=model.base.omni,
         out_l=max(one.out_l for one in each), out_psi=max(one.out_psi for one in each),
         out_z=max(one.out_z for one in each),
         reach_base_path=reach_base_path(model)[1],
