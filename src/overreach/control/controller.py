@@ -18,8 +18,9 @@ from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
 from overreach.gate.limits import part_within
-from overreach.law.body import Planner, UnusableError, WholeBody, checked
+from overreach.law.body import CarryingPlanner, Planner, UnusableError, WholeBody, checked
 from overreach.law.frame import FRAMES, heading_rate, meant, meant_by_tool
+from overreach.law.recentre import NOT_CARRIED
 from overreach.model.model import Model, channels
 from overreach.types import (
     FLOATS,
@@ -80,6 +81,7 @@ class HandController:
         self.model = model
         self._governor.model = model
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
+        self._centring, self._carried = law.recentring(model), NOT_CARRIED
 
     def restart(self) -> None:
         """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
@@ -220,7 +222,12 @@ class HandController:
         asked = _with(u, w_z=0.0) if in_place else u
         base = self._base
         turning = self.guard.written[base.axes - 1] + self._governor.w_m
-        plan = checked(self._plan(chain, amid(asked, 0.5 * turning * dt) if self._governs else u, is_))
+        asked = amid(asked, 0.5 * turning * dt) if self._governs else asked
+        if self._centring is None:
+            plan = checked(self._plan(chain, asked, is_))
+        else:
+            plan = checked(cast(CarryingPlanner, self._plan)(chain, asked, is_, self._carried.part))
+            self._carried = self._centring.after(self._carried, plan.split.mu, asked.u_r, dt)
         split, own = plan.split, plan.joints
         if split.v_y is not None and not base.omni:
             raise UnusableError(f"v_y = {split.v_y:g}, but the base cannot move sideways")
@@ -273,6 +280,7 @@ class HandController:
     def _at_rest(self, chain: Chain, state: RobotState) -> Decision:
         """Return a decision in which nothing moves."""
         self._governor.rest()
+        self._carried = NOT_CARRIED
         rest = Split(*self._shares, 0.0, 0.0, 0.0, 0.0, v_y=0.0 if self._base.omni else None)
         return Decision(state, self._located(chain, state), NO_MOTION, rest, self._still, 1.0, MOVING)
 

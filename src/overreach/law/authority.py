@@ -78,6 +78,8 @@ def exact(
     rise: Rise,
     limits: Limits6,
     mount: Mount3,
+    carried: float = 0.0,
+    lead: float = 0.0,
 ) -> Shares:
     """Share so that the EE does exactly what is commanded: the arm closes the residual.
 
@@ -87,7 +89,8 @@ def exact(
         v_b = (mu u_r - (1 - sigma) w_l k_r - sigma u_t k_r/k_t) / (c + sigma sn k_r/k_t)
         w_b = sigma (u_t + v_b sn)/k_t + (1 - sigma) w_l
         v_m = u_r - c v_b - k_r w_b,   w_m = (u_t + sn v_b - k_t w_b)/l
-    q [rad/m] is the turn per metre that brings the base behind the hand's line of motion.
+    q [rad/m] is the turn per metre that brings the base behind the hand's line of motion. carried, lead: as in
+    `overreach.law.recentre`: the part of mu that is 1 + lead instead.
     Source: this project (docs/why.md), with the shares of Kwon et al. 2026.
     """
     l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
@@ -104,6 +107,8 @@ def exact(
     else:
         g = -1.0
         mu = rise(l_min - l, k_l)
+    if carried != 0.0:
+        mu += carried * (1.0 + lead - mu)
     drive = mu * u_r
     scale = 1.0
     v_b = 0.0
@@ -152,6 +157,7 @@ def exact(
         u_t *= scale
     d = u_t + v_b * sn
     w_b = sigma * d / lever + (1.0 - sigma) * w_l
+    mu = min(mu, 1.0)
     return mu, sigma, v_b, w_b, u_r - c * v_b - k_r * w_b, (d - k_t * w_b) / l, scale
 
 
@@ -164,13 +170,16 @@ def omni(
     rise: Rise,
     limits: Limits6,
     mount: Mount3,
+    carried: float = 0.0,
+    lead: float = 0.0,
 ) -> tuple[float, float, float, float, float, float, float]:
     """Share with a base that moves sideways too: its part of the motion is the part that is commanded, itself.
 
     Return (mu, sigma, v_x, v_y, w_b, v_m, w_m), for a command that turns the hand at w_c [rad/s]:
         w_b = sigma w_c,   (v_x, v_y) + w_b z x p = mu u_r r + sigma u_t t
         v_m = (1 - mu) u_r,   w_m = (1 - sigma) u_t/l
-    with p the hand in the base frame. Bands are kept exactly, and the whole command is carried out.
+    with p the hand in the base frame; carried, lead: as in `exact`. Bands are kept exactly, and the whole command is
+    carried out.
     Source: this project, with the shares of Kwon et al. 2026.
     """
     l_min, l_max, psi_min, psi_max, k_l, k_psi = limits
@@ -179,12 +188,14 @@ def omni(
     sn = sin(psi + yaw)
     mu = rise(l - l_max, k_l) if u_r >= 0.0 else rise(l_min - l, k_l)
     sigma = rise(psi - psi_max, k_psi) if u_t >= 0.0 else rise(psi_min - psi, k_psi)
+    if carried != 0.0:
+        mu += carried * (1.0 + lead - mu)
     out = mu * u_r
     along = sigma * u_t
     w_b = sigma * w_c
     v_x = out * c - along * sn + w_b * (s_y + l * sn)
     v_y = out * sn + along * c - w_b * (s_x + l * c)
-    return mu, sigma, v_x, v_y, w_b, (1.0 - mu) * u_r, (1.0 - sigma) * u_t / l
+    return min(1.0, mu), sigma, v_x, v_y, w_b, (1.0 - mu) * u_r, (1.0 - sigma) * u_t / l
 
 
 def ee_velocity(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 from overreach.arm.chain import Chain
 from overreach.errors import LONGEST_NAME
+from overreach.law.recentre import Recentring
 from overreach.model.model import Model
 from overreach.parameters import Parameters
 from overreach.types import FLOATS, Frame, HandTwist, Plan, Split, Twist
@@ -15,6 +16,14 @@ from overreach.verdicts import Verdict
 
 Planner = Callable[[Chain, HandTwist, Twist], Plan]
 """(arm at its joints, commanded hand twist, measured base twist) -> plan. Pure; raises nothing."""
+
+
+class CarryingPlanner(Protocol):
+    """A planner of a law that re-centres the arm, which is also told how far the base has come to carry the hand."""
+
+    def __call__(self, chain: Chain, u: HandTwist, base: Twist, carried: float = 0.0, /) -> Plan:
+        """Return the plan. carried: 0 to 1, as in `overreach.law.recentre`."""
+        ...
 
 
 class WholeBody(Parameters, frozen=True):
@@ -31,6 +40,13 @@ class WholeBody(Parameters, frozen=True):
     def planner(self, model: Model) -> Planner:
         """Return the planner for `model`."""
         raise NotImplementedError
+
+    def recentring(self, model: Model) -> Recentring | None:
+        """Return how the arm is brought back to mid-reach while the base carries the hand; None: it is not.
+
+        A law for which it is returns a `CarryingPlanner`.
+        """
+        return None
 
 
 class UnusableError(ValueError):

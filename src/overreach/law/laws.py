@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Annotated
 
 from overreach.arm.chain import Chain
 from overreach.law import authority
 from overreach.law.blend import Blend, Smoothstep, Step, Tanh
-from overreach.law.body import Planner, WholeBody
+from overreach.law.body import CarryingPlanner, Planner, WholeBody
 from overreach.law.lead import lead
+from overreach.law.recentre import CHOICES, USUAL, Recentring, recentring
 from overreach.model.model import Model
+from overreach.parameters import choice
 from overreach.types import Frame, HandTwist, Plan, Split, Twist
 
 Share = Callable[[float, float, float, float], Split]
@@ -72,11 +75,13 @@ def bound(shares: Callable[..., authority.Shares], model: Model, blend: Blend) -
 class Exact(Law, frozen=True):
     """Ours: exact in true kinematics, the arm closes what the base leaves, the base lines up.
 
-    A base that moves sideways too needs not line up: it carries its share of the command itself.
+    A base that moves sideways too needs not line up: it carries its share of the command itself. recentre: whether the
+    arm comes back to mid-reach while the base carries the hand.
     """
 
     name = "exact"
     blend: Blend = Smoothstep()
+    recentre: Annotated[str, choice("Re-centring", CHOICES)] = USUAL
 
     def bind(self, model: Model) -> Share:
         """Return `authority.exact` for `model`; of `authority.omni`, where the base is omni, for a hand that only goes.
@@ -85,31 +90,38 @@ class Exact(Law, frozen=True):
         """
         if not model.base.omni:
             return bound(authority.exact, model, self.blend)
-        turning = self._turning(model)
-        return lambda l, psi, u_r, u_t: turning(l, psi, u_r, u_t, 0.0)
+        share = self._share(model)
+        return lambda l, psi, u_r, u_t: share(l, psi, u_r, u_t, 0.0, 0.0, 0.0)
 
-    def _turning(self, model: Model) -> Callable[[float, float, float, float, float], Split]:
+    def recentring(self, model: Model) -> Recentring | None:
+        """Return how the arm is brought back to mid-reach."""
+        return recentring(model, self.recentre)
+
+    def _share(self, model: Model) -> Callable[[float, float, float, float, float, float, float], Split]:
+        """Return the shares for (l, psi, u_r, u_t, w_c, carried, lead)."""
         rise = self.blend.rise
         limits, mount = constants(model, self.blend)
 
-        def share(l: float, psi: float, u_r: float, u_t: float, w_c: float) -> Split:
-            mu, sigma, v_x, v_y, w_b, v_m, w_m = authority.omni(l, psi, u_r, u_t, w_c, rise, limits, mount)
+        def sideways(l: float, psi: float, u_r: float, u_t: float, w_c: float, k: float, lead: float) -> Split:
+            mu, sigma, v_x, v_y, w_b, v_m, w_m = authority.omni(l, psi, u_r, u_t, w_c, rise, limits, mount, k, lead)
             return Split(mu, sigma, v_x, w_b, v_m, w_m, v_y=v_y)
 
-        return share
+        def share(l: float, psi: float, u_r: float, u_t: float, _w_c: float, k: float, lead: float) -> Split:
+            return Split(*authority.exact(l, psi, u_r, u_t, rise, limits, mount, k, lead))
 
-    def planner(self, model: Model) -> Planner:
-        """As of any law; of a base that moves sideways too with the turning that is commanded."""
-        if not model.base.omni:
-            return super().planner(model)
-        share = self._turning(model)
+        return sideways if model.base.omni else share
+
+    def planner(self, model: Model) -> CarryingPlanner:
+        """As of any law; with the turning that is commanded, and with how far the base has come to carry the hand."""
+        share, centring = self._share(model), self.recentring(model)
         lag, mount = model.base.lag, model.mount.three
 
-        def plan(chain: Chain, u: HandTwist, base: Twist) -> Plan:
+        def plan(chain: Chain, u: HandTwist, base: Twist, carried: float = 0.0) -> Plan:
             l, psi, u_r, u_t = chain.l, chain.psi, u.u_r, u.u_t
             if lag > 0.0:
                 l, psi, u_r, u_t = lead(l, psi, u_r, u_t, base.v_x, base.w_z, lag, mount, base.v_y)
-            return Plan(share(l, psi, u_r, u_t, u.w_z))
+            more = centring.lead(l, 1.0 if u_r >= 0.0 else -1.0) if carried and centring else 0.0
+            return Plan(share(l, psi, u_r, u_t, u.w_z, carried, more))
 
         return plan
 

@@ -1,0 +1,66 @@
+"""While the base carries the hand it goes a little faster than the hand, until the arm is back at mid-reach.
+
+The hand does not notice: the arm closes what the base does more. How far a drive has come to be carried is one number,
+which the controller keeps, so that laws stay pure:
+
+    k_1 = min(1, k + mu |u_r| dt / way)      while u_r keeps its sign; 0 once it turns round, or the hand is let go
+    mu' = mu + k (1 + ratio h(x) - mu)       x: how far the arm is from mid-reach, in parts of `over`; h(x) = x (2 - x)
+
+Rates are continuous: k grows with the distance, and at the turn u_r is 0. mu' >= mu: the hand stays in its band.
+Source: this project.
+"""
+
+from __future__ import annotations
+
+from overreach.model.model import Model
+from overreach.types import Record
+
+RATIO = 0.25
+"""The base goes faster than the hand by this part of the hand's speed ..."""
+SPARE = 0.95
+"""... and, with it, by no more than this part of its own greatest speed."""
+OVER = 0.5
+"""Nearer to mid-reach than this part of what lies between it and the outer limit, the base's lead fades."""
+USUAL, ON, OFF = "usual", "on", "off"
+CHOICES = (USUAL, ON, OFF)
+"""On where the workspace was measured; always; never."""
+
+
+class Carried(Record, frozen=True):
+    """How far a drive has come to be carried by the base, 0 to 1, and its sense: 1 outward, -1 inward, 0 neither."""
+
+    part: float = 0.0
+    sense: float = 0.0
+
+
+NOT_CARRIED = Carried()
+
+
+class Recentring(Record, frozen=True):
+    """Bound to a robot. middle: mid-reach [m]; over, way [m]; ratio: of the base's lead."""
+
+    middle: float
+    over: float
+    way: float
+    ratio: float
+
+    def lead(self, l: float, sense: float) -> float:
+        """Return by which part of the hand's speed the base leads, for the hand at l [m] and a sense of the drive."""
+        x = min(1.0, sense * (l - self.middle) / self.over)
+        return self.ratio * x * (2.0 - x) if x > 0.0 else 0.0
+
+    def after(self, before: Carried, mu: float, u_r: float, dt: float) -> Carried:
+        """Return what a drive has come to after a period `dt` [s] at u_r [m/s], of which the base had the part mu."""
+        sense = 1.0 if u_r > 0.0 else -1.0 if u_r < 0.0 else 0.0
+        part = before.part if sense == before.sense else 0.0
+        return Carried(min(1.0, part + mu * abs(u_r) * dt / self.way), sense)
+
+
+def recentring(model: Model, chosen: str) -> Recentring | None:
+    """Return how a robot is re-centred, None if it is not. chosen: one of CHOICES."""
+    space = model.workspace
+    if chosen == OFF or (chosen == USUAL and not space.edges):
+        return None
+    half = 0.5 * (space.l_max - space.l_min)
+    ratio = min(RATIO, SPARE * model.base.v_max / model.command.v_c - 1.0)
+    return Recentring(space.l_min + half, OVER * half, half, ratio) if ratio > 0.0 else None
