@@ -55,9 +55,12 @@ def spec(s_x: float, bolted: float = 0.0, omni: bool = False) -> mujoco.MjSpec:
 
 def written(
     folder: Path, s_x: float, bolted: float = 0.0, omni: bool = False, yaw: float = 0.0,
-    home: tuple[float, ...] = HOME, name: str = "ur5",
+    home: tuple[float, ...] = HOME, name: str = "ur5", heading: float = 0.0,
 ) -> str:  # fmt: skip
-    """Write model and description into `folder`; return the description's path. yaw: [mount] yaw [rad]."""
+    """Write model and description into `folder`; return the description's path.
+
+    yaw: [mount] yaw [rad]; heading: where the base drives to, as a yaw of its body [rad].
+    """
     model = spec(s_x, bolted, omni)
     model.compile()
     (folder / "ur5.xml").write_text(model.to_xml(), "utf-8")
@@ -80,6 +83,7 @@ w_max = 1.5
 dv_max = 2.0
 dw_max = 4.0
 footprint = [0.7, 0.58]
+heading = {heading}
 [arm]
 joints = ["pan", "lift", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 speed = [3.15, 3.15, 3.15, 3.2, 3.2, 3.2]

@@ -218,7 +218,8 @@ def workspace(
 
 @app.command
 def check(
-    robot: Annotated[str, tyro.conf.Positional],
+    robot: Annotated[str, tyro.conf.Positional] = "",
+    all: Annotated[bool, tyro.conf.FlagCreatePairsOff] = False,
     mode: str = "follow",
     streams: int = 200,
     seed: int = 0,
@@ -229,6 +230,8 @@ def check(
 
     Args:
         robot: A name (see `overreach robots`) or a TOML file.
+        all: Instead, every property of the law for every robot that ships, in each of its modes; exit code 1 if one is
+            not kept.
         mode: How the hand is held: follow, fixed, level or free.
         streams: How many streams of each kind, smooth ones and stick steps: 20 s each.
         seed: Of the streams.
@@ -236,10 +239,20 @@ def check(
         jobs: Processes; by default one a core.
     """
     from overreach.check.command import run_check
+    from overreach.check.every import run_all
+    from overreach.errors import SetupError
     from overreach.files import check_writable
 
     if json is not None:
         check_writable(json, "--json")
+    if all:
+        if robot:
+            raise SetupError(f"check takes a robot or --all, not both: got {robot!r} and --all")
+        if not run_all(streams, seed, json, jobs):
+            raise SystemExit(1)
+        return
+    if not robot:
+        raise SetupError("check needs a robot, or --all: `overreach robots` lists them")
     run_check(robot, mode, streams, seed, json, jobs)
 
 

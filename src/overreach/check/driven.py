@@ -46,9 +46,12 @@ def commanded(model: DescribedRobot, commands: Array) -> list[Tick]:
     return [tick for tick, _ in ticks(model, commands)]
 
 
-def ticks(model: DescribedRobot, commands: Array) -> Iterator[tuple[Tick, KinematicRobot]]:
-    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start, by periods."""
-    pilot, robot = Pilot(model, Exact(usual_blend(Exact().blend, model))), KinematicRobot(model)
+def ticks(model: DescribedRobot, commands: Array, psi: float | None = None) -> Iterator[tuple[Tick, KinematicRobot]]:
+    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start, by periods.
+
+    psi: the bearing [rad] at which it starts.
+    """
+    pilot, robot = Pilot(model, Exact(usual_blend(Exact().blend, model))), KinematicRobot(model, psi=psi)
     pilot.ask(ArmRequest(OPERATOR), 0.0)
     for k, (v, w, v_z, *aside) in enumerate(commands.tolist()):
         t = k * DT_S
@@ -59,15 +62,18 @@ def ticks(model: DescribedRobot, commands: Array) -> Iterator[tuple[Tick, Kinema
         yield tick, robot
 
 
-def drive(model: DescribedRobot, commands: Array) -> Driven:
-    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start."""
+def drive(model: DescribedRobot, commands: Array, psi: float | None = None) -> Driven:
+    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start.
+
+    psi: the bearing [rad] at which it starts.
+    """
     many, n = len(commands), len(model.arm.channels)
     found = Driven(
         np.empty((many + 1, n)), np.empty((many + 1, 3)), np.empty((many, 3)), np.empty(many), np.empty(many),
         np.empty(many), np.empty(many), np.empty((many, 3)), np.empty((many, n)), [], [],
     )  # fmt: skip
     robot = KinematicRobot(model)
-    for k, (tick, moved) in enumerate(ticks(model, commands)):
+    for k, (tick, moved) in enumerate(ticks(model, commands, psi)):
         robot = moved
         state = tick.decided.state
         decided = tick.decided

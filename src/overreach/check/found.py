@@ -12,6 +12,7 @@ from overreach.arm.spatial.screws import Array
 from overreach.model.catalogue import load, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.measure.rank import sentence
+from overreach.model.mujoco.chain import base_frame
 from overreach.model.mujoco.robot import Parts
 
 SMALL, LARGE = 0.05, 5.0
@@ -73,8 +74,7 @@ def wheel_gaps(parts: Parts) -> list[tuple[str, float]]:
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos0
     mujoco.mj_kinematics(model, data)
-    base = model.body(parts.description.base.body).id
-    R, p = data.xmat[base].reshape(3, 3), data.xpos[base]
+    R, p = base_frame(model, data, parts.description)
     gaps = []
     for name in parts.description.base.wheels:
         body = int(model.jnt_bodyid[model.joint(name).id])

@@ -3,7 +3,8 @@
 name, summary     the name under which it is chosen, and one line about it
 model             the model file: a path from the TOML, "menagerie:ROBOT/ENTRY", or "builtin:NAME"
 [base]            kind "differential" or "omni", body, wheels; v_max, w_max, dv_max, dw_max, lag; footprint
-                  (length, width)
+                  (length, width); heading: where it drives to, as a yaw of its body [rad], pi for one that drives
+                  with the model's back first
 [arm]             joints, each a name or several that move together; speed, acceleration of each
 [hand]            body, offset in it [m], approach axis in it; gripper: its joints, if any
 [locked]          joints of the model that stay where they are, with their places: NAME = value
@@ -44,6 +45,7 @@ class BaseTable(Record, frozen=True):
     kind: str = "differential"
     lag: float = 0.0
     wheels: tuple[str, ...] = ()
+    heading: float = 0.0
 
 
 class ArmTable(Record, frozen=True):
@@ -129,6 +131,8 @@ class Description(Record, frozen=True):
         for home in (self.home, *self.homes.values()):
             if len(home) != joints or not all(map(math.isfinite, home)):
                 raise SetupError(f"home must be a number for each of the {joints} joints, got {list(home)}")
+        if not -math.pi <= self.base.heading <= math.pi:
+            raise SetupError(f"base.heading must be -pi to pi rad, got {self.base.heading:g}")
         if self.base.kind not in KINDS:
             raise UnknownNameError("base.kind", self.base.kind, KINDS)
         for mode in (*self.workspace, *self.homes):

@@ -83,7 +83,7 @@ def run_robot(
         else:
             device = load_robot(robot, clock.now())
             left.callback(_stop, device, clock)  # whatever comes in between, also before the first tick
-        eager()
+        left.enter_context(eager())
         link = RobotEnd(endpoint, name or check_name(device.model.name))
         left.callback(link.close)
         loop = Loop(device, link, clock, rate, law, max_delay)

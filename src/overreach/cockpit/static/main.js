@@ -43,6 +43,7 @@ const link = new Link({
     for (const part of Object.keys(most)) stick.most[part] = robot.obeys.includes(part) ? most[part] : 0;
     stick.grips = robot.obeys.includes("gripper");
     panel.welcome(robot);
+    view.sized(robot.model, robot.reach[1]);
     configure(settings, scene);
   },
   settings: configure,

@@ -14,6 +14,7 @@ from overreach.arm.spatial import task
 from overreach.arm.spatial.arm import SpatialArm
 from overreach.arm.spatial.manner import Manner
 from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.settle import Posture
 from overreach.errors import WorkspaceError
 from overreach.model.base import Base
 from overreach.model.description import Measured
@@ -23,13 +24,17 @@ from overreach.model.measure.walk import Walked, walk
 from overreach.model.mujoco.contact import Contacts
 
 BEARINGS = 1.05
-"""The sector ends at this bearing [rad] from the arm's x axis at the latest, either way."""
+"""The sector ends at this bearing [rad] from the way that the base drives at the latest, either way; from the arm's x
+axis where the base moves sideways too."""
 AHEAD = 0.15
 """The hand is so far [parts of R] ahead of the turning centre of a base that cannot move sideways."""
 LONG = 0.245
 """A sector is preferred that is so long in l, in parts of R: a reach of 0.11 R then fits between its two bands."""
 ROOM = 0.3
 """Room [rad] in bearing that a sector should have to either side of straight ahead."""
+OBLIQUE, SIDEWAYS = 45.0, 90.0
+"""How far [degrees] the sector may lie off the way that a differential base drives: beyond the first it is slow, beyond
+the second it is refused."""
 FIXED = 0.5
 """The greatest deviation D [rad] of a fixed yaw from the bearing."""
 SIGMA = 1.0 / 3.0
@@ -104,6 +109,12 @@ def measure(
     """
     manner, R = arm.manner, arm.manner.reach
     up = float((arm.R_home @ np.array(manner.approach))[2])
+    turned = math.degrees(abs(mount.yaw))
+    if turned > SIDEWAYS and not base.omni:
+        raise WorkspaceError(
+            f"the arm's sector lies {turned:.0f} degrees off the way that the base drives ([mount] yaw), where a base "
+            "that cannot move sideways cannot help it: for an arm that works over the back give [base] heading"
+        )
     if contacts.at_home:
         raise WorkspaceError(f"at home the arm touches its own robot: {contacts.names(contacts.at_home)}")
     walked = walk(arm, manner.sigma, lambda q: bool(contacts.touching(q)), coarse, progress)
@@ -116,13 +127,15 @@ def measure(
         )
     ahead = ahead_of(mount, walked.l, walked.psi)
     least = -np.inf if base.omni else AHEAD * R
-    ok = walked.ok & (np.abs(walked.psi) <= BEARINGS + 1e-9)[None, :, None] & (ahead >= least)[:, :, None]
+    aside = 0.0 if base.omni else mount.yaw
+    ok = walked.ok & (np.abs(walked.psi + aside) <= BEARINGS + 1e-9)[None, :, None] & (ahead >= least)[:, :, None]
     if not ok[walked.home]:
         where = arm.posture_at_home
-        if abs(where.psi) > BEARINGS or ahead[walked.home[:2]] < least:
+        if abs(where.psi + aside) > BEARINGS or ahead[walked.home[:2]] < least:
             raise WorkspaceError(
                 f"home is beside the base: its hand is at psi = {where.psi:.2f} rad, "
                 f"{ahead[walked.home[:2]]:.2f} m ahead of the turning centre; choose one in front of it"
+                + (", or for an arm that works over the back [base] heading = 3.14159" if _behind(mount, where) else "")
             )
         raise WorkspaceError("around home the posture jumps to another branch: choose another home")
     cells = ok, walked.l, walked.psi, walked.z, walked.home
@@ -131,6 +144,11 @@ def measure(
         raise WorkspaceError("around home there is no sector that is two cells wide: choose another home")
     l, psi, z = [(float(axis[a]), float(axis[b])) for axis, (a, b) in zip(walked[:3], box[:3], strict=True)]
     warnings = []
+    if turned > OBLIQUE and not base.omni:
+        warnings.append(
+            f"the arm's sector lies {turned:.0f} degrees off the way that the base drives: it is slow, since the base "
+            "has to come round before it helps"
+        )
     if (psi[0] > -1e-9 and psi[1] < ROOM) or (psi[1] < 1e-9 and psi[0] > -ROOM) or psi[0] > 1e-9 or psi[1] < -1e-9:
         raise WorkspaceError(
             f"the sector, psi = {psi[0]:.2f} to {psi[1]:.2f} rad, has no room about straight ahead: home is beside the "
@@ -160,6 +178,11 @@ def fastest(R: float, sigma: float, p_x: float, base: Base, mount: Mount) -> flo
 def ahead_of(mount: Mount, l: Array, psi: Array) -> Array:
     """Return how far [m] the hand is ahead of the base's turning centre, (l, psi)."""
     return np.asarray(mount.s_x + l[:, None] * np.cos(psi + mount.yaw)[None, :])
+
+
+def _behind(mount: Mount, home: Posture) -> bool:
+    """Say whether the hand at home is behind the turning centre."""
+    return mount.s_x + home.l * math.cos(home.psi + mount.yaw) < 0.0
 
 
 def _round(pair: tuple[float, float]) -> tuple[float, float]:

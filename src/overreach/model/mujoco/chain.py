@@ -39,7 +39,7 @@ def extract(model: mujoco.MjModel, description: Description) -> Extracted:
         for joint in group:
             data.qpos[model.jnt_qposadr[joint]] = 0.0
     mujoco.mj_kinematics(model, data)
-    R_b, p_b = data.xmat[base].reshape(3, 3), data.xpos[base]
+    R_b, p_b = base_frame(model, data, description)
     n = len(joints)
     screws = np.zeros((n, 7))
     lower, upper, units = [], [], []
@@ -98,6 +98,16 @@ def _check_order(
 
 ENDLESS = 1e3
 """Limit of a joint that has none [rad]."""
+
+
+def base_frame(model: mujoco.MjModel, data: mujoco.MjData, description: Description) -> tuple[Array, Array]:
+    """Return the base's frame in the model's world, x where it drives to: axes as columns (3, 3), origin (3,) [m]."""
+    body = body_of(model, description.base.body, "base.body")
+    c, s = np.cos(description.base.heading), np.sin(description.base.heading)
+    R = data.xmat[body].reshape(3, 3)
+    if description.base.heading != 0.0:
+        R = R @ np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
+    return np.array(R), np.array(data.xpos[body])
 
 
 def lock(model: mujoco.MjModel, data: mujoco.MjData, description: Description) -> None:

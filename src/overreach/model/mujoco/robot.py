@@ -24,7 +24,7 @@ from overreach.types import Channel
 
 CONTACT = 0.022
 """Bodies may come as close as this, in parts of R."""
-ALGORITHM = "4"
+ALGORITHM = "5"
 """To be changed with the algorithm that measures."""
 STILL_M, STILL_RAD = 0.01, 0.105
 """Rates [m/s, rad/s] below which a joint may stand still."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from overreach.model.base import Wheel
 from overreach.model.description import Description
-from overreach.model.mujoco.chain import body_of, joint_of
+from overreach.model.mujoco.chain import base_frame, joint_of
 
 
 def wheels_of(model: mujoco.MjModel, description: Description) -> tuple[Wheel, ...]:
@@ -17,8 +17,7 @@ def wheels_of(model: mujoco.MjModel, description: Description) -> tuple[Wheel, .
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos0
     mujoco.mj_kinematics(model, data)
-    base = body_of(model, description.base.body, "base.body")
-    R, p = data.xmat[base].reshape(3, 3), data.xpos[base]
+    R, p = base_frame(model, data, description)
     found = []
     for name in description.base.wheels:
         joint = joint_of(model, name)

@@ -5,6 +5,7 @@ import { colour, onTheme } from "./theme.js";
 
 const TRAIL_STEP = 0.02; // [m]
 const TRAIL_LENGTH = 6000;
+const [USUAL_REACH, LARGER] = [0.9, 2.2]; // reach of an arm [m] that is shown as it is, and how much larger at most
 const NAMES = ["ink", "muted", "line", "grid", "grid-major", "arm", "base", "hand", "space", "band", "panel", "stage"];
 
 export class View {
@@ -58,6 +59,14 @@ export class View {
     if (pad.top > box.bottom - 8) return whole;
     if (pad.left + pad.right > box.left + box.right + 80) return { x: (pad.left - box.left) / 2, y: whole.y };
     return { x: whole.x, y: (pad.top - box.top) / 2 };
+  }
+
+  // A small robot is shown larger: once for each robot, before anybody zooms.
+  sized(name, reach) {
+    if (this.name === name) return;
+    this.name = name;
+    this.scale = this.fit * Math.max(1, Math.min(LARGER, USUAL_REACH / reach));
+    this.dirty = true;
   }
 
   show(state) {
