@@ -238,22 +238,13 @@ def check(
         json: File to write the numbers to.
         jobs: Processes; by default one a core.
     """
-    from overreach.check.command import run_check
-    from overreach.check.every import run_all
-    from overreach.errors import SetupError
+    from overreach.check.every import run_one_or_all
     from overreach.files import check_writable
 
     if json is not None:
         check_writable(json, "--json")
-    if all:
-        if robot:
-            raise SetupError(f"check takes a robot or --all, not both: got {robot!r} and --all")
-        if not run_all(streams, seed, json, jobs):
-            raise SystemExit(1)
-        return
-    if not robot:
-        raise SetupError("check needs a robot, or --all: `overreach robots` lists them")
-    run_check(robot, mode, streams, seed, json, jobs)
+    if not run_one_or_all(robot, all, mode, streams, seed, json, jobs):
+        raise SystemExit(1)
 
 
 @app.command

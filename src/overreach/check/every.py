@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 from tqdm import tqdm
 
+from overreach.check.command import run_check
 from overreach.check.properties import Property, properties
 from overreach.errors import SetupError
 from overreach.files import write_text
@@ -23,6 +24,18 @@ def all_of_them() -> list[str]:
     return [
         in_mode(name, mode) for name, text in described().items() for mode in read_description(text, name).workspace
     ]
+
+
+def run_one_or_all(robot: str, every: bool, mode: str, streams: int, seed: int, out: Path | None, jobs: int) -> bool:
+    """Check one robot, or every one of them; say whether all properties are kept. Raises SetupError."""
+    if every and robot:
+        raise SetupError(f"check takes a robot or --all, not both: got {robot!r} and --all")
+    if every:
+        return run_all(streams, seed, out, jobs)
+    if not robot:
+        raise SetupError("check needs a robot, or --all: `overreach robots` lists them")
+    run_check(robot, mode, streams, seed, out, jobs)
+    return True
 
 
 def run_all(streams: int, seed: int, out: Path | None, jobs: int) -> bool:
