@@ -39,6 +39,11 @@ def task_of(T: Array, v_x: float, v_y: float, v_z: float, yaw: float, out: Array
         out[i] = T[i, 0] * v_x + T[i, 1] * v_y + T[i, 2] * v_z + T[i, 5] * yaw
 
 
+def is_turned(asked: Array) -> bool:
+    """Say whether the attitude is to turn."""
+    return bool(asked[TURN] != 0.0 or asked[TURN + 1] != 0.0 or asked[TURN + 2] != 0.0 or asked[SPIN] != 0.0)
+
+
 def and_turning(T: Array, part: float, w: Array, out: Array) -> None:
     """Add part T (0, 0, 0, w) to `out`."""
     for i in range(3, T.shape[0]):

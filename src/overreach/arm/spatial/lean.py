@@ -29,6 +29,7 @@ from overreach.arm.spatial.asked import (
     W_C,
     WAS,
     U,
+    is_turned,
     reach_for,
 )
 from overreach.arm.spatial.lean_fit import Fit, Floats
@@ -126,8 +127,6 @@ class Lean:
 
     def _turned(self, R_0: Array, yaw: float, asked: Array, dt: float) -> Array:
         """See `turning.turned_on`."""
-        if not asked[TURN:ASKED].any() or dt == 0.0:
-            return R_0
         out = np.empty(9)
         turned_on(R_0, yaw, asked[TURN:SPIN], asked[SPIN], self._approach, dt, np.empty(9), out)
         return out
@@ -155,7 +154,8 @@ class Lean:
         R_0 = asked[ATTITUDE:TURN]
         T = self._task(bearing, R_0, bearing + f)
         angle, e = self._apart(hand, R_0, bearing + f)
-        w_x, w_y, w_z = self._turning(R_0, bearing + f, asked)
+        turns = is_turned(asked)
+        w_x, w_y, w_z = self._turning(R_0, bearing + f, asked) if turns else (0.0, 0.0, 0.0)
         held = angle if T is None else math.hypot(*(T @ e).tolist()) / self._ell
         k_r = min(setup[K_R], TURN_BACK / max(held, 1e-9))
         e = (e[0] * k_r, e[1] * k_r, e[2] * k_r)
@@ -227,7 +227,8 @@ class Lean:
             if setup[D] > 0.0:
                 turned_by = half_turn(bearing_1 - bearing) + (real[2] - scale * w_c) * dt
                 f_1, _ = task.yielding(half_turn(ask[DELTA] - turned_by), setup[D])
-            yaw_1, R_1 = bearing_1 + f_1, self._turned(R_0, bearing + f, asked, scale * part * dt)
+            yaw_1 = bearing_1 + f_1
+            R_1 = self._turned(R_0, bearing + f, asked, scale * part * dt) if turns else R_0
             T_1 = self._task(bearing_1, R_1, yaw_1)
             self._pose(q + np.array(dq) * dt, hand_1)
             missing, size = self._missing(T_1, place, R_1, yaw_1, hand_1)
@@ -253,7 +254,7 @@ class Lean:
             why, scale = OFF, NOT_WHOLE
         out[:n] = dq
         out[n : n + HOLDS] = (*base, scale, fit.sigma, joint, why, off_v, off_w, f)
-        out[n + HOLDS :] = self._turned(R_0, bearing + f, asked, scale * dt)
+        out[n + HOLDS :] = self._turned(R_0, bearing + f, asked, scale * dt) if turns else R_0
 
     def _missing(self, T: Array | None, place: Three, R_0: Array, yaw: float, hand: Array) -> tuple[Floats, float]:
         """See `step.missing`, for the attitude Rz(yaw) R_0."""

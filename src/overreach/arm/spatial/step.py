@@ -37,6 +37,7 @@ from overreach.arm.spatial.asked import (
     and_turning,
     goal,
     happens,
+    is_turned,
     left_by,
     moved_with,
     reach_for,
@@ -143,9 +144,11 @@ def step(
     if setup[D] > 0.0:
         f, inside = yielding(asked[DELTA], setup[D])
     yawed(R_0, bearing + f, R)
-    for i in range(3):
-        a_i = R[3 * i] * approach[0] + R[3 * i + 1] * approach[1] + R[3 * i + 2] * approach[2]
-        turning[i] = asked[TURN + i] + asked[SPIN] * a_i
+    turns = is_turned(asked)
+    if turns:
+        for i in range(3):
+            a_i = R[3 * i] * approach[0] + R[3 * i + 1] * approach[1] + R[3 * i + 2] * approach[2]
+            turning[i] = asked[TURN + i] + asked[SPIN] * a_i
     apart(R, hand, e)
     rows(held, bearing, R, approach, ell, T)
     k_r = min(setup[K_R], TURN_BACK / max(held_part(T, ell, e), 1e-9))
@@ -173,7 +176,8 @@ def step(
         happens(asked, base, slip, real)
         bearing_rate = (polar[0] * u[1] - polar[1] * u[0]) / polar[2]
         task_of(T, u[0], u[1], u[2], inside * w_c + (1.0 - inside) * bearing_rate, x)
-        and_turning(T, part, turning, x)
+        if turns:
+            and_turning(T, part, turning, x)
         left_by(T, real, hand, polar, inside, e, x_c)
         s, sigma, joint = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
         part_of_x = s
@@ -196,7 +200,8 @@ def step(
                     T, s_base * u[0], s_base * u[1], s_base * u[2],
                     s_base * (inside * w_c + (1.0 - inside) * bearing_rate), x,
                 )  # fmt: skip
-                and_turning(T, s_base * part, turning, x)
+                if turns:
+                    and_turning(T, s_base * part, turning, x)
                 left_by(T, real, hand, polar, inside, e, x_c)
                 again, sigma, other = fit(A, w, x, x_c, null, most_null, low, high, soft_low, soft_high, eps, B, dq)
                 part_of_x = again
@@ -231,8 +236,11 @@ def step(
         if setup[D] > 0.0:
             turned_by = half_turn(bearing_1 - bearing) + (real[2] - s * w_c) * dt
             f_1, _ = yielding(half_turn(asked[DELTA] - turned_by), setup[D])
-        turned_on(R_0, bearing + f, asked[TURN:SPIN], asked[SPIN], approach, s * part * dt, E, R_1)
-        yawed(R_1, bearing_1 + f_1, R)
+        if turns:
+            turned_on(R_0, bearing + f, asked[TURN:SPIN], asked[SPIN], approach, s * part * dt, E, R_1)
+            yawed(R_1, bearing_1 + f_1, R)
+        else:
+            yawed(R_0, bearing_1 + f_1, R)
         rows(held, bearing_1, R, approach, ell, T_1)
         for k in range(n):
             q_1[k] = q[k] + dq[k] * dt
@@ -276,4 +284,7 @@ def step(
         s = NOT_WHOLE
     out[n + SCALE], out[n + SIGMA], out[n + JOINT], out[n + WHY] = s, sigma, joint, why
     out[n + OFF_V], out[n + OFF_W], out[n + YAW] = off_v, off_w, f
-    turned_on(R_0, bearing + f, asked[TURN:SPIN], asked[SPIN], approach, s * dt, E, out[n + HOLDS :])
+    if turns:
+        turned_on(R_0, bearing + f, asked[TURN:SPIN], asked[SPIN], approach, s * dt, E, R_1)
+    for i in range(9):
+        out[n + HOLDS + i] = R_1[i] if turns else R_0[i]
