@@ -17,7 +17,7 @@ from overreach.control.solved import Solved
 from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
-from overreach.gate.limits import part_within
+from overreach.gate.limits import limit_speed
 from overreach.law.body import CarryingPlanner, Planner, UnusableError, WholeBody, checked
 from overreach.law.frame import FRAMES, heading_rate, meant, meant_by_tool
 from overreach.law.recentre import NOT_CARRIED
@@ -245,7 +245,7 @@ class HandController:
         if self._governs and self.frame is Frame.TOOL:
             u = meant_by_tool(cast(Governing, chain).tool.tolist(), twist, polar.l, self._whole)
             swept = 0.0 if self._whole else u.w_z * polar.l
-            return u, part_within(_with(u, u_t=u.u_t - swept), self.model.command)
+            return u, limit_speed(Twist(u.u_r, u.u_t - swept, u.u_z), self.model.command)[1]
         u = meant(self._angle, twist, polar.l, polar.psi + self._mount[2], state.pose.yaw, polar.theta_e)
         if self._governs and not self._whole:
             u = _with(u, w_r=twist.w_x, w_t=twist.w_y)

@@ -10,7 +10,7 @@ from operator import add, sub
 from msgspec.structs import astuple
 
 from overreach.errors import SetupError
-from overreach.types import HandTwist, Record, Twist
+from overreach.types import Record, Twist
 from overreach.verdicts import Verdict
 
 SLACK = 1e-9
@@ -56,12 +56,6 @@ def limit_speed(twist: Twist, limits: Limits) -> tuple[Twist, float]:
     if worst <= 1.0 + SLACK:
         return twist, 1.0
     return Twist(*[part / worst for part in astuple(twist)]), 1.0 / worst
-
-
-def part_within(u: HandTwist, limits: Limits) -> float:
-    """Return the part of `u`, none of which sweeps the hand, that keeps the limits along the ground and up and down."""
-    worst = max(hypot(u.u_r, u.u_t) / limits.v_c, abs(u.u_z) / limits.v_z)
-    return 1.0 if worst <= 1.0 else 1.0 / worst
 
 
 def slew(now: Twist, goal: Twist, limits: Limits, dt: float) -> tuple[Twist, bool]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from overreach.arm.spatial.screws import Array
-from overreach.arm.spatial.turning import apart
+from overreach.arm.spatial.turning import apart, rotation
 
 UPRIGHT = 0.9
 """A hand points up or down where its approach axis has this share of up."""
@@ -15,12 +15,9 @@ UPRIGHT = 0.9
 
 def turned(w: Array) -> Array:
     """Return the rotation by the vector `w` [rad]."""
-    angle = float(np.linalg.norm(w))
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = w / angle
-    K = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
+    R = np.empty(9)
+    rotation(float(w[0]), float(w[1]), float(w[2]), R)
+    return R.reshape(3, 3)
 
 
 def vector(R: Array) -> Array:

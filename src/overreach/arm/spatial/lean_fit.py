@@ -47,11 +47,11 @@ class Fit:
     def more(self, x: Floats, free: list[bool] | None) -> Floats:
         """Return rates for x: of all joints or, damped a little, of those that are free."""
         if free is None:
-            return (self._P @ np.array(x)).tolist()  # type: ignore[no-any-return]
+            return (self._P @ np.array(x)).tolist()  # type: ignore[no-any-return]  # numpy does not say of what
         A_w = self._A * (self._w * np.array(free, float))
         G = A_w @ self._A.T
         G.flat[:: G.shape[0] + 1] += damping_beside(self.sigma, self._eps) + SLIGHT * _trace(G)
-        return (A_w.T @ np.linalg.solve(G, x)).tolist()  # type: ignore[no-any-return]
+        return (A_w.T @ np.linalg.solve(G, x)).tolist()  # type: ignore[no-any-return]  # as above
 
     def fit(self, x: Floats, x_c: Floats) -> tuple[float, int, Floats]:
         """Return (s, the joint that limits or -1, rates)."""
