@@ -65,11 +65,14 @@ def test_a_drive_that_turns_round_is_carried_no_more(part: float, mu: float, bef
     """What is carried grows with the way that the base goes, to 1; it is 0 again once the sense changes."""
     centring = Recentring(0.65, 0.1, 0.2, 0.25)
     first = Carried(part, math.copysign(1.0, before) if before else 0.0)
-    after = centring.after(first, mu, now, DT)
-    if before * now > 0.0:
-        assert after.part == pytest.approx(min(1.0, part + mu * abs(now) * DT / 0.2))
+    begun = centring.now(first, now)
+    after = centring.after(begun, mu, now, DT)
+    same = first.sense == (math.copysign(1.0, now) if now else 0.0)
+    assert begun.part == (part if same else 0.0)
+    if same and now:
+        assert after.part == pytest.approx(min(1.0, part + mu * mu * abs(now) * DT / 0.2))
     elif now:
-        assert after.part <= mu * abs(now) * DT / 0.2
+        assert after.part <= mu * mu * abs(now) * DT / 0.2
     assert 0.0 <= after.part <= 1.0
 
 
@@ -126,6 +129,7 @@ def test_turning_back_ends_it_without_a_jump() -> None:
     back = np.tile((-0.5 * v, 0.0, 0.0), (60, 1))
     driven = drive(model, np.concatenate((np.tile((v, 0.0, 0.0), (300, 1)), back)))
     assert driven.twist[299, 0] > 1.05 * v  # it leads
+    assert driven.twist[300:, 0].min() > -1e-3 * v  # not for a single period does it carry the hand back as well
     assert np.abs(driven.twist[-20:, 0]).max() == 0.0
     assert driven.scale.min() == 1.0
     assert np.abs(np.diff(driven.twist[:, 0])).max() / 0.01 <= model.base.dv_max * (1.0 + 1e-9)

@@ -226,8 +226,9 @@ class HandController:
         if self._centring is None:
             plan = checked(self._plan(chain, asked, is_))
         else:
-            plan = checked(cast(CarryingPlanner, self._plan)(chain, asked, is_, self._carried.part))
-            self._carried = self._centring.after(self._carried, plan.split.mu, asked.u_r, dt)
+            carried = self._centring.now(self._carried, asked.u_r)
+            plan = checked(cast(CarryingPlanner, self._plan)(chain, asked, is_, carried.part))
+            self._carried = self._centring.after(carried, plan.split.mu, asked.u_r, dt)
         split, own = plan.split, plan.joints
         if split.v_y is not None and not base.omni:
             raise UnusableError(f"v_y = {split.v_y:g}, but the base cannot move sideways")

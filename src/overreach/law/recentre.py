@@ -3,10 +3,11 @@
 The hand does not notice: the arm closes what the base does more. How far a drive has come to be carried is one number,
 which the controller keeps, so that laws stay pure:
 
-    k_1 = min(1, k + mu |u_r| dt / way)      while u_r keeps its sign; 0 once it turns round, or the hand is let go
+    k_1 = min(1, k + mu^2 |u_r| dt / way)    while u_r keeps its sign; 0 once it turns round, or the hand is let go
     mu' = mu + k (1 + ratio h(x) - mu)       x: how far the arm is from mid-reach, in parts of `over`; h(x) = x (2 - x)
 
-Rates are continuous: k grows with the distance, and at the turn u_r is 0. mu' >= mu: the hand stays in its band.
+Rates are continuous: k grows with the distance, and at the turn u_r is 0. mu' >= mu: the hand stays in its band. The
+square keeps k small until the base has taken over: the joints that brake for the band should not brake for k as well.
 Source: this project.
 """
 
@@ -49,11 +50,14 @@ class Recentring(Record, frozen=True):
         x = min(1.0, sense * (l - self.middle) / self.over)
         return self.ratio * x * (2.0 - x) if x > 0.0 else 0.0
 
-    def after(self, before: Carried, mu: float, u_r: float, dt: float) -> Carried:
-        """Return what a drive has come to after a period `dt` [s] at u_r [m/s], of which the base had the part mu."""
+    def now(self, before: Carried, u_r: float) -> Carried:
+        """Return what counts for a period at u_r [m/s]: nothing of a drive in the other sense."""
         sense = 1.0 if u_r > 0.0 else -1.0 if u_r < 0.0 else 0.0
-        part = before.part if sense == before.sense else 0.0
-        return Carried(min(1.0, part + mu * abs(u_r) * dt / self.way), sense)
+        return before if sense == before.sense else Carried(0.0, sense)
+
+    def after(self, now: Carried, mu: float, u_r: float, dt: float) -> Carried:
+        """Return what `now` has come to after a period `dt` [s] at u_r [m/s], of which the base had the part mu."""
+        return Carried(min(1.0, now.part + mu**2 * abs(u_r) * dt / self.way), now.sense)
 
 
 def recentring(model: Model, chosen: str) -> Recentring | None:
