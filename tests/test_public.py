@@ -39,7 +39,7 @@ ARROWS: dict[str, set[str]] = {
     "law": {"errors", "verdicts", "types", "parameters", "arm", "model"},
     "fast": {"errors", "arm", "model", "law"},
     "baselines": {"errors", "extras", "types", "parameters", "arm", "model", "law"},
-    "plugs": {"errors", "parameters", "model", "law"},
+    "plugs": {"errors", "parameters", "arm", "model", "law"},
     "control": {"errors", "verdicts", "requests", "types", "gate", "arm", "model", "law"},
     "robots": {"errors", "types", "model", "plugs"},
     "host": {"errors", "clock", "priority", "types", "gate", "model", "robots"},
@@ -50,7 +50,7 @@ ARROWS: dict[str, set[str]] = {
         "control", "robots", "host", "link",
     },
     "cockpit": {"errors", "clock", "requests", "types", "parameters", "gate", "plugs", "robots", "link", "robot_side"},
-    "check": {"errors", "files", "requests", "types", "gate", "arm", "model", "law", "plugs", "control", "robots"},
+    "check": {"errors", "verdicts", "files", "requests", "types", "gate", "arm", "model", "plugs", "control", "robots"},
     "run": {
         "errors", "files", "verdicts", "requests", "clock", "types", "parameters", "gate", "arm", "model", "law",
         "plugs", "control", "robots",
@@ -77,7 +77,7 @@ ARROWS: dict[str, set[str]] = {
 
 PUBLIC = {
     "__version__",
-    "Workspace", "Mount", "Law", "WholeBody", "Exact", "Paper", "Switch", "Blend", "Tanh", "Smoothstep", "Step",
+    "Workspace", "Mount", "Law", "WholeBody", "Exact", "Side", "Paper", "Switch", "Blend", "Tanh", "Smoothstep", "Step",
     "Split", "Twist", "BaseTwist", "Pose", "RobotState", "Frame", "Command", "ArmRequest", "Tick", "Verdict",
     "PlanarRobot", "planar", "Robot", "KinematicRobot", "Pilot", "replay", "Gate", "Limits",
     "load_scenario", "simulate", "OverreachError", "SetupError",

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from overreach.law.blend import Blend, Smoothstep, Step, Tanh
     from overreach.law.body import WholeBody
     from overreach.law.laws import Exact, Law, Paper, Switch
+    from overreach.law.side import Side
     from overreach.model.planar import PlanarRobot, planar
     from overreach.model.workspace import Workspace
     from overreach.requests import ArmRequest
@@ -50,6 +51,7 @@ _HOMES = {
     "Exact": "law.laws",
     "Paper": "law.laws",
     "Switch": "law.laws",
+    "Side": "law.side",
     "Mount": "arm.mount",
     "Workspace": "model.workspace",
     "PlanarRobot": "model.planar",
@@ -87,6 +89,7 @@ __all__ = [
     "Robot",
     "RobotState",
     "SetupError",
+    "Side",
     "Smoothstep",
     "Split",
     "Step",

@@ -21,7 +21,7 @@ def drive(
     allow_host: Repeated = (),
     rate: float = 200.0,
     browser: bool = True,
-    law: str = "exact",
+    law: str = "",
     set: tuple[str, ...] = (),
     hosted: bool = True,
     max_delay: float = 0.4,
@@ -36,7 +36,7 @@ def drive(
         allow_host: A further name of this machine, such as robot.local, that the page may be opened by; repeatable.
         rate: Rate of the control loop [Hz], 50 to 1000.
         browser: Whether to open a browser.
-        law: Name of the law it starts with (see `overreach laws`).
+        law: Name of the law it starts with (see `overreach laws`); by default the one that suits the robot.
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         hosted: Whether the robot runs in a process of its own, which brings it to rest if the loop hangs or dies.
         max_delay: Commands older than this [s] are not obeyed, 0.1 to 2.
@@ -54,7 +54,7 @@ def robot(
     listen: str = "tcp/127.0.0.1:7460",
     rate: float = 200.0,
     name: str = "",
-    law: str = "exact",
+    law: str = "",
     set: tuple[str, ...] = (),
     hosted: bool = True,
     max_delay: float = 0.4,
@@ -68,7 +68,7 @@ def robot(
         listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
         rate: Rate of the control loop [Hz], 50 to 1000.
         name: Its name in the network, by default the robot's own; two robots need two names.
-        law: Name of the law it starts with (see `overreach laws`).
+        law: Name of the law it starts with (see `overreach laws`); by default the one that suits the robot.
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         hosted: Whether the robot runs in a process of its own, which brings it to rest if the loop hangs or dies.
         max_delay: Commands older than this [s] are not obeyed, 0.1 to 2.
@@ -111,7 +111,7 @@ def simulate(
     scenario: Annotated[str, tyro.conf.Positional],
     robot: str = "",
     mode: str = "",
-    law: str = "exact",
+    law: str = "",
     set: tuple[str, ...] = (),
     out: Path | None = None,
     json: bool = False,
@@ -123,7 +123,7 @@ def simulate(
             dither_pushed) or a TOML file.
         robot: Robot to run it on: a name (see `overreach robots`) or a file; by default the scenario's own.
         mode: How its hand is held: follow, fixed, level or free.
-        law: Name of the law (see `overreach laws`).
+        law: Name of the law (see `overreach laws`); by default the one that suits the robot.
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         out: CSV file to write, one row per step.
         json: Print the summary as JSON.
@@ -193,7 +193,7 @@ def bench(robot: str = "", mode: str = "", json: Path | None = None) -> None:
 @app.command
 def workspace(
     robot: Annotated[str, tyro.conf.Positional],
-    mode: str = "follow",
+    mode: str = "",
     find_home: bool = False,
     out: Path | None = None,
     figure: Path | None = None,
@@ -202,7 +202,7 @@ def workspace(
 
     Args:
         robot: A name (see `overreach robots`) or a TOML file.
-        mode: How the hand is held: follow, fixed, level or free.
+        mode: How the hand is held: follow, fixed, level or free; by default as the description says, else follow.
         find_home: Look for home postures first, and measure from the best one.
         out: TOML file to put the table into; a description that is there keeps the rest.
         figure: File to draw to, as its suffix says: SVG, PNG or PDF.
@@ -220,7 +220,7 @@ def workspace(
 def check(
     robot: Annotated[str, tyro.conf.Positional] = "",
     all: Annotated[bool, tyro.conf.FlagCreatePairsOff] = False,
-    mode: str = "follow",
+    mode: str = "",
     streams: int = 200,
     seed: int = 0,
     json: Path | None = None,
@@ -232,7 +232,7 @@ def check(
         robot: A name (see `overreach robots`) or a TOML file.
         all: Instead, every property of the law for every robot that ships, in each of its modes; exit code 1 if one is
             not kept.
-        mode: How the hand is held: follow, fixed, level or free.
+        mode: How the hand is held: follow, fixed, level or free; by default as the description says, else follow.
         streams: How many streams of each kind, smooth ones and stick steps: 20 s each.
         seed: Of the streams.
         json: File to write the numbers to.

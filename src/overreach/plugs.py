@@ -7,6 +7,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from overreach.arm.chain import is_aside
 from overreach.errors import SetupError, UnknownNameError, told
 from overreach.law.blend import Blend
 from overreach.law.body import WholeBody
@@ -48,9 +49,13 @@ def point(group: str, name: str) -> EntryPoint:
     return _points(group)[name]
 
 
-def law_names() -> list[str]:
-    """Return the names of all laws and whole bodies: everything that can be chosen with --law."""
-    return names(LAWS, BODIES)
+def law_names(model: Model | None = None) -> list[str]:
+    """Return the names of all laws and whole bodies, or of those for such an arm as that of `model`: for --law."""
+    found = names(LAWS, BODIES)
+    if model is None:
+        return found
+    plugs = usable(found, law_plug)
+    return [name for name in found if getattr(plugs[name], "aside", False) == is_aside(model.arm)]
 
 
 def _plug(name: str, *groups: str) -> type[Any]:

@@ -62,6 +62,7 @@ class Verdict(enum.StrEnum):
     SINGULAR = "singular", "Damped", "The arm is almost straight or folded: it gives way there.", "warn"
     OFF = "off", "Scaled", "The arm cannot follow exactly here: the whole command is scaled.", "warn"
     BESIDE = "beside", "Scaled", "The hand is beside the base, where driving cannot help it.", "warn"
+    SWINGING = "swinging", "Swinging", "The base swings round behind the hand: the hand waits for it.", "go"
     SPEED = "speed", "Scaled", "Speed limit: the whole command is scaled.", "warn"
     HEIGHT = "height", "At its height", "The hand is at the end of its height: it goes on along the ground.", "warn"
     ACCELERATION = "acceleration", "Moving", "Acceleration limit: the whole command is ramped.", "go"

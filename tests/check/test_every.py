@@ -18,7 +18,14 @@ from tests.ur5 import written
 
 def test_each_robot_in_each_mode_that_ships() -> None:
     """All that are described, in every mode for which there is a workspace."""
-    assert {"mobile7#follow", "mobile7#fixed", "mobile4#follow", "omni7#fixed", "omni5#follow"} <= set(all_of_them())
+    assert {
+        "mobile7#follow",
+        "mobile7#fixed",
+        "mobile4#follow",
+        "omni7#fixed",
+        "omni5#follow",
+        "stretch#fixed",
+    } <= set(all_of_them())
 
 
 @pytest.mark.parametrize("which", ["mobile4", "omni5"])

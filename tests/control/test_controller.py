@@ -37,7 +37,7 @@ class Closing(Weighted, frozen=True):
 
 
 @settings(max_examples=60)
-@given(st.sampled_from(law_names()), st.integers(0, 10**6))
+@given(st.sampled_from(law_names(planar())), st.integers(0, 10**6))
 def test_no_limit_is_ever_passed(name: str, seed: int) -> None:
     """Under any commands and any law, base and joints keep their limits of speed and acceleration, always."""
     law = load_law(name)

@@ -63,7 +63,7 @@ def test_the_arm_goes_outward_no_faster_for_it(l: float, u_r: float, carried: fl
 @given(parts, parts, speeds, speeds)
 def test_a_drive_that_turns_round_is_carried_no_more(part: float, mu: float, before: float, now: float) -> None:
     """What is carried grows with the way that the base goes, to 1; it is 0 again once the sense changes."""
-    centring = Recentring(0.65, 0.1, 0.2, 0.25)
+    centring = Recentring(0.2, 0.65, 0.1, 0.25)
     first = Carried(part, math.copysign(1.0, before) if before else 0.0)
     begun = centring.now(first, now)
     after = centring.after(begun, mu, now, DT)
@@ -78,7 +78,7 @@ def test_a_drive_that_turns_round_is_carried_no_more(part: float, mu: float, bef
 
 def test_lead_ends_at_mid_reach() -> None:
     """The lead is 0 at mid-reach and behind it, grows to its ratio, and has no step: the arm stops where it should."""
-    centring = Recentring(0.65, 0.1, 0.2, 0.25)
+    centring = Recentring(0.2, 0.65, 0.1, 0.25)
     for sense in (1.0, -1.0):
         x = np.linspace(-0.3, 0.3, 6001)
         leads = np.array([centring.lead(0.65 + one, sense) for one in x])

@@ -84,13 +84,21 @@ def test_a_plain_urdf_is_described(tmp_path: Path) -> None:
     assert 0.5 < parts.arm.manner.reach < 1.2
 
 
+NO_WAY = """<link name="finger_link"/><joint name="finger" type="revolute"><parent link="{parent}"/>
+<child link="finger_link"/><axis xyz="0 0 1"/><limit lower="0" upper="0" effort="0" velocity="0"/></joint>"""
+
+
 def test_repairs_are_told(tmp_path: Path) -> None:
-    """Meshes that MuJoCo does not read are left out, impossible inertias too, and each is said once."""
-    mesh = SHELL.format(file="shell.dae")
-    source = spec_from_file(written(tmp_path, urdf(inertia="-0.01", extra=mesh)))
-    assert sum("inertia" in line for line in source.warnings) == 5
-    assert sum("collision meshes" in line for line in source.warnings) == 1
-    assert compiled(source.spec, "it").njnt == 7
+    """Meshes that MuJoCo does not read are left out, impossible inertias too, and ranges that are none: a line each."""
+    mesh, finger = SHELL.format(file="shell.dae"), NO_WAY.format(parent="arm_5_link")
+    source = spec_from_file(written(tmp_path, urdf(inertia="-0.01", extra=mesh + finger)))
+    assert [line.partition(" (")[0] for line in source.warnings] == [
+        "1 collision meshes cannot be read", "5 links", "1 joint",
+    ]  # fmt: skip
+    assert "and 2 more) with a mass or inertia that no body can have" in source.warnings[1]
+    model = compiled(source.spec, "it")
+    assert model.njnt == 8
+    assert not model.jnt_limited[model.joint("finger").id]
 
 
 def test_a_description_names_its_model_from_where_it_lies(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import msgspec
 import pytest
 
 from overreach.errors import SetupError
+from overreach.model.planar import planar
 from overreach.plugs import law_names
 from overreach.run.row import Row
 from overreach.run.scenario import builtin_scenarios, load_scenario, parse_scenario
@@ -59,7 +60,7 @@ def test_bad_scenarios_say_what_is_wrong(name: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("law", law_names())
+@pytest.mark.parametrize("law", law_names(planar()))
 @pytest.mark.parametrize("name", builtin_scenarios())
 def test_every_builtin_runs_with_every_law(name: str, law: str) -> None:
     """Every built-in scenario runs with every law, in its own frame, and says what it is about."""

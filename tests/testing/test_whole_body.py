@@ -19,7 +19,7 @@ from overreach.verdicts import Verdict
 
 
 @pytest.mark.parametrize("mount", [Mount(), Mount(0.15, -0.05, 0.2)], ids=["centred", "off"])
-@pytest.mark.parametrize("name", law_names())
+@pytest.mark.parametrize("name", law_names(planar()))
 def test_every_whole_body_conforms(name: str, mount: Mount) -> None:
     """Every law and every rival keeps the promises of a whole body, wherever the shoulder is."""
     check_whole_body(load_law(name), planar(mount=mount))

@@ -129,6 +129,11 @@ class Governing(Chain, Protocol):
         """The hand's own axes, forward, left and up, in polar axes: the columns of (3, 3)."""
         ...
 
+    @property
+    def facing(self) -> float:
+        """How far past its bearing [rad] lies what the hand calls ahead, when its heading is not known yet."""
+        ...
+
     def heading(self, attitude: tuple[float, ...] | None = None) -> float:
         """Return how far [rad] the heading that the hand holds is past its bearing. attitude: as in `Asked`."""
         ...
@@ -157,11 +162,22 @@ def governs(arm: Arm) -> bool:
     return bool(getattr(arm, "governs", False))
 
 
+def is_aside(arm: Arm) -> bool:
+    """Say whether an arm cannot move its hand about the shoulder, and leaves what lies along its base's way to it."""
+    return bool(getattr(arm, "aside", False))
+
+
+def turns_by_itself(arm: Arm) -> bool:
+    """Say whether an arm keeps its hand's yaw in the world, however its base turns."""
+    return bool(getattr(arm, "turns", False))
+
+
 class Arm(Protocol):
     """A manipulator: its joints and its kinematics. It does not know where it stands (`Mount`).
 
     One that has joint motions to choose from says `governs = True`: its chains are then `Governing`. It also says in
-    `follows` which of v_z, w_x, w_y its step carries out, and in `whole` whether it turns its hand about any axis.
+    `follows` which of v_z, w_x, w_y its step carries out, in `whole` whether it turns its hand about any axis, in
+    `aside` whether it cannot move its hand about the shoulder, and in `turns` whether it keeps its hand's yaw itself.
     """
 
     @property

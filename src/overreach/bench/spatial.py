@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from overreach.arm.spatial.arm import SpatialArm
 from overreach.arm.spatial.engine import warm
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.step import DONE
@@ -72,7 +71,7 @@ class _Listening:
 def with_engine(model: DescribedRobot, compiled: bool) -> DescribedRobot:
     """Return the robot with its arm's step compiled, or with numpy."""
     arm = model.arm
-    made = SpatialArm(arm.channels, arm.screws, arm.tip, arm.home, arm.manner, compiled)
+    made = arm.made(arm.home, arm.manner, compiled)
     return DescribedRobot(
         model.name, model.summary, made, model.mount, model.base, model.workspace, model.command, model.gripper,
         model.mode,

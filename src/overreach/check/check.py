@@ -20,7 +20,7 @@ from overreach.model.catalogue import load, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.mujoco.contact import Contacts
 from overreach.model.workspace import Workspace
-from overreach.types import Record
+from overreach.types import Frame, Record
 
 REACH_M = 0.1
 """The reach inside the workspace that should not move the base."""
@@ -156,7 +156,7 @@ def reach_base_path(model: DescribedRobot) -> tuple[float, float]:
     commands = np.zeros((2 * there + back + 100, 3))
     commands[: there - round(ramp / DT_S), 0] = v
     commands[there : there + back - round(ramp / DT_S), 0] = -v
-    driven = drive(model, commands)
+    driven = drive(model, commands, frame=Frame.POLAR)
     return length, float(np.hypot(*np.diff(driven.base[:, :2], axis=0).T).sum())
 
 

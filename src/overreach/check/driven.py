@@ -11,7 +11,6 @@ from overreach.arm.spatial.screws import Array
 from overreach.check.streams import DT_S
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
-from overreach.law.laws import Exact, usual_blend
 from overreach.model.described import DescribedRobot
 from overreach.requests import ArmRequest
 from overreach.robots.kinematic import KinematicRobot
@@ -46,34 +45,33 @@ def commanded(model: DescribedRobot, commands: Array) -> list[Tick]:
     return [tick for tick, _ in ticks(model, commands)]
 
 
-def ticks(model: DescribedRobot, commands: Array, psi: float | None = None) -> Iterator[tuple[Tick, KinematicRobot]]:
-    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start, by periods.
+def ticks(
+    model: DescribedRobot, commands: Array, psi: float | None = None, frame: Frame = Frame.HAND
+) -> Iterator[tuple[Tick, KinematicRobot]]:
+    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in a frame, the hand's by default, from its start.
 
     psi: the bearing [rad] at which it starts.
     """
-    pilot, robot = Pilot(model, Exact(usual_blend(Exact().blend, model))), KinematicRobot(model, psi=psi)
+    pilot, robot = Pilot(model), KinematicRobot(model, psi=psi)
     pilot.ask(ArmRequest(OPERATOR), 0.0)
     for k, (v, w, v_z, *aside) in enumerate(commands.tolist()):
         t = k * DT_S
         twist = Twist(v, aside[0] if aside else 0.0, v_z, w_z=w)
-        command = Command(OPERATOR, k + 1, 1, True, twist, Frame.HAND, seen=t)
+        command = Command(OPERATOR, k + 1, 1, True, twist, frame, seen=t)
         tick = pilot.tick(robot.read(t), command, t, DT_S)
         robot.write(tick.base, tick.joints, tick.gripper, t, t + DT_S)
         yield tick, robot
 
 
-def drive(model: DescribedRobot, commands: Array, psi: float | None = None) -> Driven:
-    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start.
-
-    psi: the bearing [rad] at which it starts.
-    """
+def drive(model: DescribedRobot, commands: Array, psi: float | None = None, frame: Frame = Frame.HAND) -> Driven:
+    """Drive `model` as `ticks` does, and return what happened."""
     many, n = len(commands), len(model.arm.channels)
     found = Driven(
         np.empty((many + 1, n)), np.empty((many + 1, 3)), np.empty((many, 3)), np.empty(many), np.empty(many),
         np.empty(many), np.empty(many), np.empty((many, 3)), np.empty((many, n)), [], [],
     )  # fmt: skip
     robot = KinematicRobot(model)
-    for k, (tick, moved) in enumerate(ticks(model, commands, psi)):
+    for k, (tick, moved) in enumerate(ticks(model, commands, psi, frame)):
         robot = moved
         state = tick.decided.state
         decided = tick.decided

@@ -14,9 +14,11 @@ from overreach.arm.spatial.turning import apart, yawed
 from overreach.check.driven import Driven
 from overreach.check.streams import DT_S
 from overreach.model.described import DescribedRobot
+from overreach.verdicts import Verdict
 
 TOL_V = 1e-3
-"""A step is OK where its scale is 1, the hand's velocity off by at most this [m/s] and its attitude by TOL_W [rad]."""
+"""A step is OK where its scale is 1, or the hand waits for a base that swings, and where its velocity is off from its
+part of the command by at most this [m/s], and its attitude by TOL_W [rad]."""
 LOOK = 50
 """Contacts are looked for in one step of so many."""
 HALF = 0.5
@@ -50,7 +52,8 @@ def judge(model: DescribedRobot, driven: Driven, touching: Callable[[Array], boo
     moved = np.stack((np.diff(x), np.diff(y), np.diff(z)), axis=1) / DT_S
     off_v = np.linalg.norm(moved - driven.scale[:, None] * driven.u, axis=1)
     off_w = _turned_off(model, driven, R, psi)[1:]
-    whole = driven.scale >= 1.0 - 1e-9
+    waits = np.array([verdict == Verdict.SWINGING for verdict in driven.verdicts])
+    whole = (driven.scale >= 1.0 - 1e-9) | waits
     ok = whole & (off_v <= TOL_V) & (off_w <= TOL_W)
     lower, upper = arm.limits[:, 0], arm.limits[:, 1]
     gap = np.minimum(driven.q - lower, upper - driven.q)

@@ -100,7 +100,7 @@ def run_drive(
     port: int | None,
     rate: float,
     browser: bool,
-    law: str = "exact",
+    law: str = "",
     changes: Sequence[str] = (),
     allowed: Sequence[str] = (),
     hosted: bool = True,
@@ -120,11 +120,12 @@ def run_drive(
     check_robot_name(robot)
     check_rate(rate)
     check_delay(max_delay)
-    load_law(law, assignments(changes))
+    if law or changes:
+        load_law(law or "exact", assignments(changes))  # the usual ones have the same parameters
     hosts = [host, *map(check_host_name, allowed)]
     _exit_on_signals()
-    given = ["--law", law, *(["--set", *changes] if changes else []), *([] if hosted else ["--no-hosted"])]
-    given += ["--max-delay", str(max_delay)]
+    given = [*(["--law", law] if law else []), *(["--set", *changes] if changes else [])]
+    given += [*([] if hosted else ["--no-hosted"]), "--max-delay", str(max_delay)]
     with contextlib.closing(bind_page(host, port)) as page, robot_process(robot, rate, given) as (endpoint, process):
         _operate(endpoint, page, hosts, browser, lambda: process.poll() is not None)
         if process.poll() is not None:

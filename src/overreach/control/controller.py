@@ -8,7 +8,7 @@ from typing import cast
 import msgspec
 from msgspec.structs import astuple
 
-from overreach.arm.chain import Chain, Governing, governs
+from overreach.arm.chain import Chain, Governing, governs, is_aside
 from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
 from overreach.control.decision import Decision
@@ -18,7 +18,7 @@ from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
 from overreach.gate.guard import Guard
 from overreach.gate.limits import limit_speed
-from overreach.law.body import CarryingPlanner, Planner, UnusableError, WholeBody, checked
+from overreach.law.body import CarryingPlanner, Planner, UnusableError, WholeBody, check_fits, checked
 from overreach.law.frame import FRAMES, heading_rate, meant, meant_by_tool
 from overreach.law.recentre import NOT_CARRIED
 from overreach.model.model import Model, channels
@@ -56,6 +56,7 @@ class HandController:
         self._arm, self._mount, self._base = model.arm, model.mount.three, model.base
         self._still = (0.0,) * len(model.arm.channels)
         self._governs = governs(model.arm)
+        self._aside = is_aside(model.arm)
         self._whole = bool(getattr(model.arm, "whole", True))
         self.guard = Guard(all_of_them, ramp_s)
         bounds = self._bounded(model)
@@ -75,6 +76,7 @@ class HandController:
         model: the same robot with another workspace; planner: that of the law for it, where it has been made before.
         """
         model = model or self.model
+        check_fits(law, model)
         if model.mount != self.model.mount or len(model.arm.channels) != len(self._still):
             raise SetupError("a law is changed for the same robot: its mount and its joints stay as they are")
         name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
@@ -125,7 +127,8 @@ class HandController:
 
     def _located(self, chain: Chain, state: RobotState) -> PolarState:
         if self._theta_e is None or self.frame is not Frame.HAND:  # in the others it follows r
-            self._theta_e = state.pose.yaw + chain.psi + self._mount[2]
+            facing = cast(Governing, chain).facing if self._governs else 0.0
+            self._theta_e = state.pose.yaw + chain.psi + self._mount[2] + facing
         return PolarState(chain.l, chain.psi, self._theta_e)
 
     def decide(
@@ -168,7 +171,7 @@ class HandController:
             what = f"answered {error}" if isinstance(error, UnusableError) else f"raised {told(error)}"
             self.guard.latch(f"The law {self.name!r} {what}.")
             decision = self._at_rest(chain, state)
-        if decision.split.verdict is not MOVING:
+        if decision.split.verdict is Verdict.NO_SOLUTION:
             motion = Motion.NONE  # the law gives no motion
         decision, rates = self._last_word(wanted := decision, chain, motion, dt)
         self._feedback.asked.add(rates, self._now)
@@ -226,9 +229,10 @@ class HandController:
         if self._centring is None:
             plan = checked(self._plan(chain, asked, is_))
         else:
-            carried = self._centring.now(self._carried, asked.u_r)
+            along = self._centring.along(asked)
+            carried = self._centring.now(self._carried, along)
             plan = checked(cast(CarryingPlanner, self._plan)(chain, asked, is_, carried.part))
-            self._carried = self._centring.after(carried, plan.split.mu, asked.u_r, dt)
+            self._carried = self._centring.after(carried, plan.split.mu, along, dt)
         split, own = plan.split, plan.joints
         if split.v_y is not None and not base.omni:
             raise UnusableError(f"v_y = {split.v_y:g}, but the base cannot move sideways")
@@ -247,7 +251,8 @@ class HandController:
             u = meant_by_tool(cast(Governing, chain).tool.tolist(), twist, polar.l, self._whole)
             swept = 0.0 if self._whole else u.w_z * polar.l
             return u, limit_speed(Twist(u.u_r, u.u_t - swept, u.u_z), self.model.command)[1]
-        u = meant(self._angle, twist, polar.l, polar.psi + self._mount[2], state.pose.yaw, polar.theta_e)
+        sweeps = 0.0 if self._aside else polar.l  # a hand that cannot go about the shoulder turns in its place
+        u = meant(self._angle, twist, sweeps, polar.psi + self._mount[2], state.pose.yaw, polar.theta_e)
         if self._governs and not self._whole:
             u = _with(u, w_r=twist.w_x, w_t=twist.w_y)
         return u, 1.0

@@ -13,7 +13,7 @@ from overreach.control.tick import Configured, Failed, Tick
 from overreach.gate.gate import MAX_DELAY_S, PLANE, STILL, Gate, Gated
 from overreach.gate.limits import Limits
 from overreach.law.body import Planner, WholeBody
-from overreach.law.laws import Exact
+from overreach.law.usual import usual_law
 from overreach.model.model import Model
 from overreach.requests import ArmRequest, DisarmRequest, Request, ResetRequest, RestartRequest, StopRequest
 from overreach.types import Command, RobotState
@@ -44,7 +44,7 @@ class Pilot:
         max_delay: float = MAX_DELAY_S,
     ) -> None:
         self.gate = Gate(limits or model.command, obeys=obeys(model), max_delay=max_delay)
-        self.controller = self._controller(model, law or Exact())
+        self.controller = self._controller(model, law or usual_law(model))
         self._asked: list[Request | Failed | Configured] = []
 
     def _controller(self, model: Model, law: WholeBody) -> HandController:

@@ -6,14 +6,15 @@ import math
 from collections.abc import Callable
 from typing import ClassVar, Protocol
 
-from overreach.arm.chain import Chain
-from overreach.errors import LONGEST_NAME
-from overreach.law.recentre import Recentring
+from overreach.arm.chain import Chain, is_aside
+from overreach.errors import LONGEST_NAME, SetupError
+from overreach.law.recentre import Centring
 from overreach.model.model import Model
 from overreach.parameters import Parameters
 from overreach.types import FLOATS, Frame, HandTwist, Plan, Split, Twist
 from overreach.verdicts import Verdict
 
+ASIDE = "such as a telescope to the side"
 Planner = Callable[[Chain, HandTwist, Twist], Plan]
 """(arm at its joints, commanded hand twist, measured base twist) -> plan. Pure; raises nothing."""
 
@@ -34,6 +35,9 @@ class WholeBody(Parameters, frozen=True):
     closes_residual: ClassVar[bool] = True
     """Whether the arm is to make up for how the base deviates from what it was asked for (lag, slip, limits)."""
 
+    aside: ClassVar[bool] = False
+    """Whether it is for arms that cannot move their hand about the shoulder (`Arm.aside`), and for no others."""
+
     slow_to_load: ClassVar[bool] = False
     """Whether its first use spends a while importing libraries: such a law can first be chosen only at rest."""
 
@@ -41,7 +45,7 @@ class WholeBody(Parameters, frozen=True):
         """Return the planner for `model`."""
         raise NotImplementedError
 
-    def recentring(self, model: Model) -> Recentring | None:
+    def recentring(self, model: Model) -> Centring | None:
         """Return how the arm is brought back to mid-reach while the base carries the hand; None: it is not.
 
         A law for which it is returns a `CarryingPlanner`.
@@ -49,12 +53,27 @@ class WholeBody(Parameters, frozen=True):
         return None
 
 
+def check_fits(law: type[WholeBody] | WholeBody, model: Model) -> None:
+    """Raise SetupError, with the reason, unless `law` is for arms such as that of `model`."""
+    its = is_aside(model.arm)
+    if its and not law.aside:
+        raise SetupError(
+            f"the law {law.name!r} needs an arm that moves its hand about the shoulder, and that of {model.name} "
+            f"cannot ({ASIDE}): the law 'side' is for it"
+        )
+    if law.aside and not its:
+        raise SetupError(
+            f"the law {law.name!r} is for arms that cannot move their hand about the shoulder ({ASIDE}), and that of "
+            f"{model.name} can: the law 'exact' is for it"
+        )
+
+
 class UnusableError(ValueError):
     """A plan that cannot be used; the text gives the part and its value."""
 
 
-MOVING = Verdict.MOVING
-"""This or NO_SOLUTION is what a law may say of its answer; the other verdicts are not a law's to give."""
+MAY_SAY = (Verdict.MOVING, Verdict.SWINGING, Verdict.NO_SOLUTION)
+"""What a law may say of its answer: the other verdicts are not a law's to give."""
 NO_SOLUTION = Split(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, Verdict.NO_SOLUTION)
 """The split to give when a solver fails: zero, and why."""
 
@@ -74,7 +93,7 @@ def checked(plan: Plan) -> Plan:
             if not math.isfinite(value) or (name == "scale" and not 0.0 <= value <= 1.0):
                 raise UnusableError(f"{name} = {value}")
         raise UnusableError("rates too great to use")
-    if split.verdict is not MOVING and split.verdict is not Verdict.NO_SOLUTION:  # a text that is equal is not it
+    if not any(split.verdict is one for one in MAY_SAY):  # a text that is equal is not it
         raise UnusableError(f"the verdict {str(split.verdict)[:LONGEST_NAME]!r}")
     if set(map(type, numbers)) == FLOATS and (plan.joints is None or own is plan.joints):
         return plan

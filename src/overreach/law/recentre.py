@@ -14,7 +14,7 @@ Source: this project.
 from __future__ import annotations
 
 from overreach.model.model import Model
-from overreach.types import Record
+from overreach.types import HandTwist, Record
 
 RATIO = 0.25
 """The base goes faster than the hand by this part of the hand's speed ..."""
@@ -37,27 +37,40 @@ class Carried(Record, frozen=True):
 NOT_CARRIED = Carried()
 
 
-class Recentring(Record, frozen=True):
-    """Bound to a robot. middle: mid-reach [m]; over, way [m]; ratio: of the base's lead."""
+class Centring(Record, frozen=True):
+    """Bound to a robot. way: how far the base carries the hand until it counts as carried [m]."""
+
+    way: float
+
+    def along(self, u: HandTwist) -> float:
+        """Return the part of the hand's velocity [m/s] that the base carries: whose way counts, and whose sense."""
+        raise NotImplementedError
+
+    def now(self, before: Carried, along: float) -> Carried:
+        """Return what counts for a period at `along` [m/s]: nothing of a drive in the other sense."""
+        sense = 1.0 if along > 0.0 else -1.0 if along < 0.0 else 0.0
+        return before if sense == before.sense else Carried(0.0, sense)
+
+    def after(self, now: Carried, mu: float, along: float, dt: float) -> Carried:
+        """Return what `now` has come to after a period `dt` [s] at `along` [m/s], of which the base had the part mu."""
+        return Carried(min(1.0, now.part + mu**2 * abs(along) * dt / self.way), now.sense)
+
+
+class Recentring(Centring, frozen=True):
+    """That of `exact`. middle: mid-reach [m]; over [m]; ratio: of the base's lead."""
 
     middle: float
     over: float
-    way: float
     ratio: float
+
+    def along(self, u: HandTwist) -> float:
+        """The base carries u_r."""
+        return u.u_r
 
     def lead(self, l: float, sense: float) -> float:
         """Return by which part of the hand's speed the base leads, for the hand at l [m] and a sense of the drive."""
         x = min(1.0, sense * (l - self.middle) / self.over)
         return self.ratio * x * (2.0 - x) if x > 0.0 else 0.0
-
-    def now(self, before: Carried, u_r: float) -> Carried:
-        """Return what counts for a period at u_r [m/s]: nothing of a drive in the other sense."""
-        sense = 1.0 if u_r > 0.0 else -1.0 if u_r < 0.0 else 0.0
-        return before if sense == before.sense else Carried(0.0, sense)
-
-    def after(self, now: Carried, mu: float, u_r: float, dt: float) -> Carried:
-        """Return what `now` has come to after a period `dt` [s] at u_r [m/s], of which the base had the part mu."""
-        return Carried(min(1.0, now.part + mu**2 * abs(u_r) * dt / self.way), now.sense)
 
 
 def recentring(model: Model, chosen: str) -> Recentring | None:
@@ -67,4 +80,4 @@ def recentring(model: Model, chosen: str) -> Recentring | None:
         return None
     half = 0.5 * (space.l_max - space.l_min)
     ratio = min(RATIO, SPARE * model.base.v_max / model.command.v_c - 1.0)
-    return Recentring(space.l_min + half, OVER * half, half, ratio) if ratio > 0.0 else None
+    return Recentring(half, space.l_min + half, OVER * half, ratio) if ratio > 0.0 else None

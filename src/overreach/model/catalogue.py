@@ -11,7 +11,6 @@ from pathlib import Path
 
 import msgspec
 
-from overreach.arm.spatial.arm import SpatialArm
 from overreach.errors import SetupError, UnknownNameError, WorkspaceError
 from overreach.gate.limits import Limits
 from overreach.model.cache import keep, kept
@@ -24,8 +23,6 @@ from overreach.model.model import Model
 from overreach.model.mujoco.robot import Parts, parts_of
 from overreach.model.workspace import Workspace
 
-MODE = "follow"
-"""The mode in which a hand is held if none is asked for."""
 IN_MODE = "#"
 """Between a robot and the mode in which its hand is held, where both are one text."""
 RAMP = 4.0
@@ -83,15 +80,16 @@ def parts_in(description: Description, folder: Path, mode: str) -> Parts:
 
 
 def parted(which: str, mode: str = "") -> tuple[str, str]:
-    """Return a robot's name or file, and how its hand is held: `mode`, what stands in the text, or MODE."""
+    """Return a robot's name or file, and how its hand is to be held: `mode`, what stands in the text, or neither."""
     name, _, own = which.partition(IN_MODE)
-    return name, mode or own or MODE
+    return name, mode or own
 
 
 def parts_for(which: str, mode: str = "") -> Parts:
     """Return the parts of the robot called `which`, or in the file `which`; a model file's home is looked for first."""
     name, mode = parted(which, mode)
     description, folder = description_of(name)
+    mode = mode or description.mode
     if name.endswith(MODEL_FILES):
         description = homed(description, folder, mode, _say)
     return parts_in(description, folder, mode)
@@ -136,9 +134,11 @@ def robot_of(parts: Parts, mode: str, found: Measured) -> DescribedRobot:
     if held != parts.arm.manner.held:
         raise WorkspaceError(f"[workspace.{mode}] holds {', '.join(found.held)}, which is not what the arm can hold")
     manner = msgspec.structs.replace(parts.arm.manner, yaw=found.yaw)
-    arm = SpatialArm(parts.arm.channels, parts.arm.screws, parts.arm.tip, parts.arm.home, manner)
+    arm = parts.arm.made(parts.arm.home, manner)
     description = parts.description
-    command = command_of(description.command, fastest(manner.reach, found.sigma, found.p_x, parts.base, parts.mount))
+    command = command_of(
+        description.command, fastest(manner.reach, found.sigma, found.p_x, parts.base, parts.mount, arm.aside)
+    )
     space = Workspace(*found.l, *found.psi, *found.z, edges=True)
     gripper = bool(description.hand.gripper)
     return DescribedRobot(
@@ -152,8 +152,9 @@ def load(which: str) -> Model:
 
     Raises SetupError in one line. Where its workspace is not known it is measured, which takes seconds.
     """
-    name, mode = parted(which)
+    name, _ = parted(which)
     parts = parts_for(which)
+    mode = parts.description.mode
     for warning in parts.warnings:
         _say(f"{name}: {warning}")
     return robot_of(parts, mode, workspace_of(parts, mode, _say))

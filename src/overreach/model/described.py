@@ -15,6 +15,9 @@ BAND = 0.067
 """Width of the bands in l and z, in parts of the arm's reach R ..."""
 BAND_PSI = 0.3
 """... and in psi [rad]."""
+BAND_ASIDE = 0.37
+"""Width of the band in l of an arm that moves its hand along one line only, in parts of the sector's: the base swings
+by a quarter in it. What is left between the two is for reaching."""
 CLEAR = 0.3
 """The hand starts with this much [rad] of bearing to either side, where the sector has it."""
 
@@ -42,9 +45,8 @@ class DescribedRobot:
         """Usual widths of the bands in l [m], psi [rad] and z [m]."""
         space, R = self.workspace, self.arm.manner.reach
         widest_l, widest_psi = space.widest
-        return (
-            min(BAND * R, widest_l), min(BAND_PSI, widest_psi), min(BAND * R, WIDEST * (space.z_max - space.z_min)),
-        )  # fmt: skip
+        band = BAND_ASIDE * (space.l_max - space.l_min) if self.arm.aside else min(BAND * R, widest_l)
+        return band, min(BAND_PSI, widest_psi), min(BAND * R, WIDEST * (space.z_max - space.z_min))
 
     def placed(self, mount: Mount, workspace: Workspace) -> DescribedRobot:
         """Return the same with another workspace, inside the one that was measured; raises WorkspaceError."""

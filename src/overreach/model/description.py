@@ -1,14 +1,18 @@
 """The description of a robot that has a model file: what the file does not say, or says wrongly. One TOML beside it.
 
 name, summary     the name under which it is chosen, and one line about it
-model             the model file: a path from the TOML, "menagerie:ROBOT/ENTRY", or "builtin:NAME"
+model             the model file: a path from the TOML, "menagerie:ROBOT/ENTRY", "package:MODULE/PATH" for one that a
+                  Python package brings, or "builtin:NAME"
+mode              how the hand is held if nothing else is asked for; "follow" by default
 [base]            kind "differential" or "omni", body, wheels; v_max, w_max, dv_max, dw_max, lag; footprint
                   (length, width); heading: where it drives to, as a yaw of its body [rad], pi for one that drives
                   with the model's back first
-[arm]             joints, each a name or several that move together; speed, acceleration of each
+[arm]             joints, each a name or several that move together; speed, acceleration of each; never_touch:
+                  pairs of bodies that cannot meet, where their shapes in the model are fuller than they are
 [hand]            body, offset in it [m], approach axis in it; gripper: its joints, if any
 [locked]          joints of the model that stay where they are, with their places: NAME = value
-[mount]           s_x, s_y: the shoulder, by default the first hinge's place; yaw: where the arm's x axis points
+[mount]           s_x, s_y: the shoulder, by default the first hinge's place; yaw: where the arm's x axis points; of
+                  an arm that moves its hand along one line only: by default where that begins, and where it points
 [command]         v, w, v_z, dv, dw, dv_z: full deflection of the stick, and its ramps
 home              the joints where the posture rests; [homes]: other ones, for a mode each
 [workspace.MODE]  what `overreach workspace` measured, for "follow", "fixed", "level" or "free"
@@ -49,11 +53,15 @@ class BaseTable(Record, frozen=True):
 
 
 class ArmTable(Record, frozen=True):
-    """The table [arm]: joints from the base out, a lift among them; speed [rad/s, m/s], acceleration [1/s^2]."""
+    """The table [arm]: joints from the base out, a lift among them; speed [rad/s, m/s], acceleration [1/s^2].
+
+    never_touch: pairs of bodies that cannot meet, whatever their shapes in the model.
+    """
 
     joints: tuple[str | tuple[str, ...], ...]
     speed: tuple[float, ...]
     acceleration: tuple[float, ...]
+    never_touch: tuple[tuple[str, str], ...] = ()
 
     @property
     def groups(self) -> tuple[tuple[str, ...], ...]:
@@ -75,7 +83,7 @@ class MountTable(Record, frozen=True):
 
     s_x: float | None = None
     s_y: float | None = None
-    yaw: float = 0.0
+    yaw: float | None = None
 
 
 class CommandTable(Record, frozen=True):
@@ -117,6 +125,7 @@ class Description(Record, frozen=True):
     hand: HandTable
     home: tuple[float, ...]
     summary: str = ""
+    mode: str = "follow"
     mount: MountTable = MountTable()
     command: CommandTable | None = None
     locked: dict[str, float] = {}
@@ -135,12 +144,12 @@ class Description(Record, frozen=True):
             raise SetupError(f"base.heading must be -pi to pi rad, got {self.base.heading:g}")
         if self.base.kind not in KINDS:
             raise UnknownNameError("base.kind", self.base.kind, KINDS)
-        for mode in (*self.workspace, *self.homes):
+        for mode in (self.mode, *self.workspace, *self.homes):
             check_mode(mode)
 
     def in_mode(self, mode: str) -> Description:
-        """Return the description with the home that it has for a mode."""
-        return msgspec.structs.replace(self, home=self.homes.get(mode, self.home), homes={})
+        """Return the description with the home that it has for a mode, and that mode as its own."""
+        return msgspec.structs.replace(self, home=self.homes.get(mode, self.home), homes={}, mode=mode)
 
 
 def check_mode(mode: str) -> None:

@@ -8,12 +8,15 @@ from concurrent.futures import Future
 from math import inf
 from typing import NamedTuple, final
 
+import msgspec
+
 from overreach import __version__
 from overreach.clock import Clock
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
 from overreach.errors import OverreachError, SetupError, told
 from overreach.gate.gate import MAX_DELAY_S
+from overreach.law.usual import usual_law
 from overreach.link.messages import (
     PROTOCOL,
     Accepted,
@@ -43,7 +46,8 @@ HUNG_S = 0.05
 """A decision that takes this long [s] is a fault by itself."""
 GOOD_PERIODS = 2.0
 """What is written is good for this many periods: then the robot's host, if it has one, ramps to zero."""
-EXACT = Choice("exact")
+USUAL = Choice("")
+"""The law that suits the robot."""
 
 
 def _libraries(law: Choice) -> tuple[str, ...]:
@@ -78,7 +82,7 @@ class Loop:
         link: RobotEnd,
         clock: Clock,
         rate: float = 200.0,
-        law: Choice = EXACT,
+        law: Choice = USUAL,
         max_delay: float = MAX_DELAY_S,
     ) -> None:
         self.rate = rate
@@ -87,6 +91,7 @@ class Loop:
         self._link = link
         self._clock = clock
         self._model = robot.model
+        law = law if law.name else msgspec.structs.replace(law, name=usual_law(robot.model).name)
         built = build(usual(robot.model, law), robot.model)
         self.settings = built.settings
         self.pilot = Pilot(built.model, built.law, max_delay=max_delay)

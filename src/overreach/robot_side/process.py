@@ -19,7 +19,7 @@ from overreach.link.endpoint import check_endpoint
 from overreach.link.messages import Choice, check_name
 from overreach.link.robot_end import RobotEnd
 from overreach.priority import LOOP, eager, real_time
-from overreach.robot_side.loop import EXACT, Loop
+from overreach.robot_side.loop import USUAL, Loop
 from overreach.robots.base import Robot
 from overreach.robots.load import check_robot_name, load_robot
 
@@ -44,7 +44,7 @@ def run_robot(
     rate: float,
     parent: int | None = None,
     name: str = "",
-    law: Choice = EXACT,
+    law: Choice = USUAL,
     hosted: bool = True,
     max_delay: float = MAX_DELAY_S,
 ) -> None:

@@ -13,7 +13,7 @@ from typing import final
 import msgspec
 
 from overreach.law.blend import Blend, Step
-from overreach.law.body import Planner, WholeBody
+from overreach.law.body import Planner, WholeBody, check_fits
 from overreach.law.laws import usual_blend
 from overreach.link.messages import Choice, Plug, Scene, Settings, encode
 from overreach.model.model import Model, check_workspace
@@ -58,6 +58,7 @@ def build(settings: Settings, model: Model) -> Built:
     check_workspace(placed_model, settings.workspace)
     blend = load_blend(settings.blend.name, settings.blend.parameters)
     law = load_law(settings.law.name, settings.law.parameters, blend)
+    check_fits(law, model)
     drawn: Blend = getattr(law, "blend", Step())
     edges = bands(placed_model, drawn.width_l, drawn.width_psi)
     scene = Scene(model.base.footprint, wheels(model.base), workspace(placed_model), edges)
@@ -71,9 +72,11 @@ def _read(chosen: Choice, plug: Parameters) -> Choice:
     return Choice(chosen.name, {name: getattr(plug, name) for name in chosen.parameters})
 
 
-def laws_to_choose() -> dict[str, Plug]:
-    """Return the laws and whole bodies that can be used, with their parameters."""
-    return _to_choose(usable(law_names(), law_plug), lambda plug: Plug(summary(plug), schema(plug), blends_in(plug)))
+def laws_to_choose(model: Model) -> dict[str, Plug]:
+    """Return the laws and whole bodies that can be used on a robot, with their parameters."""
+    return _to_choose(
+        usable(law_names(model), law_plug), lambda plug: Plug(summary(plug), schema(plug), blends_in(plug))
+    )
 
 
 def blends_to_choose() -> dict[str, Plug]:

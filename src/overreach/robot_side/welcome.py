@@ -25,7 +25,7 @@ class Reception:
     def __init__(self, pilot: Pilot, name: str, rate: float, simulated: bool, defaults: Settings) -> None:
         self._pilot, self._name, self._rate, self._simulated = pilot, name, rate, simulated
         self._defaults = defaults
-        self.laws, self.blends = laws_to_choose(), blends_to_choose()
+        self.laws, self.blends = laws_to_choose(pilot.model), blends_to_choose()
         self.revision = secrets.randbits(REVISION_BITS)  # not that of an earlier start
         self.welcome = msgspec.Raw()
 

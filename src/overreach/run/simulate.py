@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from overreach.control.pilot import Pilot
 from overreach.control.tick import Tick
 from overreach.law.body import WholeBody
+from overreach.law.usual import usual_law
 from overreach.plugs import load_law
 from overreach.requests import ArmRequest
 from overreach.robots.kinematic import KinematicRobot
@@ -41,7 +42,11 @@ class Run(NamedTuple):
 
 
 def law_of(scenario: Scenario, name: str, changes: Mapping[str, Any] | None = None) -> WholeBody:
-    """Return the law called `name` with the parameters and the blend of `scenario`, overridden by `changes`."""
+    """Return the law called `name`, by default the robot's usual one, with the parameters and blend of `scenario`.
+
+    changes: parameters that are to be others.
+    """
+    name = name or usual_law(scenario.model).name
     return load_law(name, {**scenario.parameters.get(name, {}), **(changes or {})}, scenario.blend)
 
 
@@ -67,8 +72,10 @@ def ticks(scenario: Scenario, law: WholeBody, pilot: Pilot | None = None) -> Ite
         yield tick, robot.true
 
 
-def simulate(scenario: Scenario | str, law: WholeBody | str = "exact") -> Run:
+def simulate(scenario: Scenario | str, law: WholeBody | str = "") -> Run:
     """Run `scenario` (or the built-in of that name, or a TOML file) with `law`, or the law of that name.
+
+    By default with the law that suits its robot.
 
     Raises SetupError when the scenario or the law cannot be used; a run itself raises nothing.
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, final
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +29,6 @@ H = 1e-6
 NO_TURN = (0.0, 0.0, 0.0)
 
 
-@final
 class SpatialArm:
     """Joints as screws in the arm's frame, their limits, a home posture, and the manner in which the hand is held.
 
@@ -65,9 +64,19 @@ class SpatialArm:
 
     def held(self, manner: Manner) -> SpatialArm:
         """Return the same arm with its hand held in another manner."""
-        return SpatialArm(self.channels, self.screws, self.tip, self.home, manner, self._compiled)
+        return self.made(self.home, manner, self._compiled)
+
+    def made(self, home: tuple[float, ...], manner: Manner, compiled: bool | None = None) -> SpatialArm:
+        """Return the same arm with another home, its hand held in another manner."""
+        return SpatialArm(self.channels, self.screws, self.tip, home, manner, compiled)
 
     governs = True
+    aside = False
+
+    @property
+    def turns(self) -> bool:
+        """Whether its hand's yaw stays in the world, however the base turns."""
+        return self.manner.yaw > 0.0
 
     @property
     def whole(self) -> bool:
@@ -104,7 +113,6 @@ class SpatialArm:
         return self.posture_at_home.walk(l, psi, z)
 
 
-@final
 class SpatialChain:
     """The arm at its joints; see `overreach.arm.chain.Chain`."""
 
@@ -141,6 +149,11 @@ class SpatialChain:
         """The hand's attitude in the base frame, (3, 3)."""
         c, s = self._turn
         return np.asarray(np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))) @ self.pose[:9].reshape(3, 3))
+
+    @property
+    def facing(self) -> float:
+        """Ahead is outward."""
+        return 0.0
 
     def heading(self, attitude: tuple[float, ...] | None = None) -> float:
         """Return how far [rad] the heading that the hand holds is past its bearing: that which its yaw comes from.

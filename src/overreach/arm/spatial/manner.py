@@ -30,7 +30,7 @@ class Manner(Record, frozen=True):
     reach: R [m], the greatest horizontal distance of the hand from the shoulder; sigma: least singular value [m/s] that
     the workspace has; held: the turnings that are held (`task.PITCH`, `SPIN`, `THIRD`); yaw: greatest deviation D [rad]
     of a yaw that is fixed in the world from the bearing, 0 where the hand follows its bearing; approach: the axis that
-    points ahead, in the hand's frame.
+    points ahead, in the hand's frame; aside: whether the arm cannot move its hand about the shoulder.
     """
 
     reach: float
@@ -38,6 +38,7 @@ class Manner(Record, frozen=True):
     held: int = task.WHOLE
     yaw: float = 0.0
     approach: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    aside: bool = False
 
     @property
     def ell(self) -> float:
@@ -52,9 +53,10 @@ class Manner(Record, frozen=True):
     @property
     def rows(self) -> tuple[int, ...]:
         """The rows of `overreach.arm.chain.Arm.rows` that can be chosen freely."""
+        place = (0, 2) if self.aside else (0, 1, 2)
         if self.held == task.WHOLE:
-            return (0, 1, 2, 3, 4, 5)
-        return (0, 1, 2, 4) if self.held & task.PITCH else (0, 1, 2)
+            return (*place, 3, 4, 5)
+        return (*place, 4) if self.held & task.PITCH else place
 
     @property
     def setup(self) -> Array:

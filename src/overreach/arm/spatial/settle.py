@@ -102,9 +102,11 @@ class Posture:
         m = task.count(manner.held)
         T = np.zeros((len(psi), m, 6))
         T[:, range(3), range(3)] = 1.0
+        if manner.aside:  # what lies about the shoulder is not the arm's
+            T[:, 0, 0], T[:, 0, 1] = np.cos(psi), np.sin(psi)
         if manner.held == task.WHOLE:
             T[:, range(3, 6), range(3, 6)] = manner.ell
-            return T
+            return np.delete(T, 1, axis=1) if manner.aside else T
         t = np.stack((-np.sin(psi), np.cos(psi), np.zeros_like(psi)), axis=1)
         a = R @ np.array(manner.approach)
         third = np.cross(a, t)
@@ -114,7 +116,7 @@ class Posture:
             if manner.held & bit:
                 T[:, k, 3:] = manner.ell * axis
                 k += 1
-        return T
+        return np.delete(T, 1, axis=1) if manner.aside else T
 
     def task_jacobian(self, q: Array) -> Array:
         """Return the task's Jacobian (B, m, n) at postures `q`, as if each held the attitude that it has."""

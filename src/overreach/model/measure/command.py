@@ -35,6 +35,7 @@ def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figu
     with tqdm(desc="cells tried", unit="", dynamic_ncols=True) as bar:
         result = measured(parts, progress=lambda more: _count(bar, more))
     description, found = parts.description, result.measured
+    mode = description.mode
     print(f"{description.name}, {mode}: {result.does}\n")
     print(drawing(result))
     print()

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from overreach.arm.spatial.arm import SpatialArm
 from overreach.arm.spatial.room import HOME
 from overreach.arm.spatial.screws import Array
 from overreach.arm.spatial.settle import Places, Posture
@@ -105,5 +104,5 @@ def find_homes(
 
 def with_home(parts: Parts, q: tuple[float, ...]) -> Parts:
     """Return the robot with another home, its hand held in the same manner."""
-    arm = SpatialArm(parts.arm.channels, parts.arm.screws, parts.arm.tip, q, parts.arm.manner, compiled=False)
+    arm = parts.arm.made(q, parts.arm.manner, compiled=False)
     return parts._replace(arm=arm, description=msgspec.structs.replace(parts.description, home=q))

@@ -14,13 +14,13 @@ from overreach.arm.spatial import task
 from overreach.arm.spatial.arm import SpatialArm
 from overreach.arm.spatial.manner import Manner
 from overreach.arm.spatial.screws import Array
-from overreach.arm.spatial.settle import Posture
+from overreach.arm.spatial.settle import Places, Posture
 from overreach.errors import WorkspaceError
 from overreach.model.base import Base
 from overreach.model.description import Measured
 from overreach.model.measure.box import Box, largest
 from overreach.model.measure.rank import WORDS, holds, sentence
-from overreach.model.measure.walk import Walked, walk
+from overreach.model.measure.walk import OFF, YAW_STRIDE, Walked, walk
 from overreach.model.mujoco.contact import Contacts
 
 BEARINGS = 1.05
@@ -37,6 +37,11 @@ OBLIQUE, SIDEWAYS = 45.0, 90.0
 the second it is refused."""
 FIXED = 0.5
 """The greatest deviation D [rad] of a fixed yaw from the bearing."""
+WIDEST_YAW = 2.0
+"""The greatest deviation D [rad] of a fixed yaw of an arm that moves its hand along one line only: what it can, up to
+this. Farther off, it yields before it has gone half round."""
+ASIDE_MODES = ("fixed", "follow")
+"""How an arm that moves its hand along one line only can hold it."""
 SIGMA = 1.0 / 3.0
 """The least singular value of a workspace, in parts of full deflection v."""
 SHARE_V, SHARE_BASE, SHARE_TURN, SHARE_SIGMA, SHARE_UP = 0.33, 0.6, 0.8, 3.0, 0.27
@@ -85,8 +90,34 @@ def manner_for(arm: SpatialArm, mode: str, v: float) -> Manner:
         raise WorkspaceError(
             f'mode "fixed" needs a yaw of the hand\'s own, and this arm has none ({sentence(held, up)})'
         )
+    if arm.aside and mode not in ASIDE_MODES:
+        raise WorkspaceError(
+            f"mode {mode!r} is not for an arm that moves its hand along one line only: {' or '.join(ASIDE_MODES)} is"
+        )
     kept = held_in(mode, held, up)
     return msgspec.structs.replace(arm.manner, held=kept, sigma=SIGMA * v, yaw=FIXED if mode == "fixed" else 0.0)
+
+
+def widest_yaw(arm: SpatialArm, touching: Callable[[Array], bool]) -> float:
+    """Return how far [rad] the hand's yaw can be turned at home, either way, in whole strides; at least FIXED.
+
+    A base that swings turns by a quarter under a hand whose yaw stays. touching: as in `walk`.
+    """
+    posture = arm.posture_at_home
+    home = Places(*(np.array([one]) for one in (posture.l, posture.psi, posture.z, 0.0)))
+    most = WIDEST_YAW
+    for sign in (1.0, -1.0):
+        q, turned = posture.home[None], 0
+        while (turned + 1) * YAW_STRIDE <= most:
+            begin = home._replace(yaw=np.array([sign * turned * YAW_STRIDE]))
+            end = home._replace(yaw=np.array([sign * (turned + 1) * YAW_STRIDE]))
+            found = posture.settle(q, begin, end)
+            held = found.off[0] <= OFF * arm.manner.reach and found.sigma[0] >= arm.manner.sigma
+            if not held or touching(found.q[0]):
+                break
+            q, turned = found.q, turned + 1
+        most = turned * YAW_STRIDE
+    return max(FIXED, most)
 
 
 def expected_speed(R: float, base: Base) -> float:
@@ -107,10 +138,13 @@ def measure(
 
     mount: where the arm stands; model: the hash to note; base: its limits bound the full deflection.
     """
+    if arm.aside and arm.turns:
+        arm = arm.held(msgspec.structs.replace(arm.manner, yaw=widest_yaw(arm, lambda q: bool(contacts.touching(q)))))
     manner, R = arm.manner, arm.manner.reach
+    anywhere = base.omni or arm.aside  # the hand need not be ahead of the base
     up = float((arm.R_home @ np.array(manner.approach))[2])
     turned = math.degrees(abs(mount.yaw))
-    if turned > SIDEWAYS and not base.omni:
+    if turned > SIDEWAYS and not anywhere:
         raise WorkspaceError(
             f"the arm's sector lies {turned:.0f} degrees off the way that the base drives ([mount] yaw), where a base "
             "that cannot move sideways cannot help it: for an arm that works over the back give [base] heading"
@@ -126,8 +160,8 @@ def measure(
             f"{manner.sigma:.3g} are needed"
         )
     ahead = ahead_of(mount, walked.l, walked.psi)
-    least = -np.inf if base.omni else AHEAD * R
-    aside = 0.0 if base.omni else mount.yaw
+    least = -np.inf if anywhere else AHEAD * R
+    aside = 0.0 if anywhere else mount.yaw
     ok = walked.ok & (np.abs(walked.psi + aside) <= BEARINGS + 1e-9)[None, :, None] & (ahead >= least)[:, :, None]
     if not ok[walked.home]:
         where = arm.posture_at_home
@@ -144,11 +178,24 @@ def measure(
         raise WorkspaceError("around home there is no sector that is two cells wide: choose another home")
     l, psi, z = [(float(axis[a]), float(axis[b])) for axis, (a, b) in zip(walked[:3], box[:3], strict=True)]
     warnings = []
-    if turned > OBLIQUE and not base.omni:
+    if turned > OBLIQUE and not anywhere:
         warnings.append(
             f"the arm's sector lies {turned:.0f} degrees off the way that the base drives: it is slow, since the base "
             "has to come round before it helps"
         )
+    if not arm.aside:
+        warnings += _room(psi)
+    inside = tuple(slice(a, b + 1) for a, b in box[:3])
+    sigma = float(walked.sigma[inside].min())
+    p_x = float(ahead[inside[:2]].min())
+    words = tuple(WORDS[row] for row in WORDS if manner.held & row)
+    measured = Measured(_round(l), _round(psi), _round(z), words, round(sigma, 4), round(p_x, 4), model, manner.yaw)
+    most = fastest(R, sigma, p_x, base, mount, arm.aside)
+    return Result(measured, sentence(manner.held, up), warnings, walked, box, most)
+
+
+def _room(psi: tuple[float, float]) -> list[str]:
+    """Return a warning where a sector has little room about straight ahead; raises WorkspaceError if it has none."""
     if (psi[0] > -1e-9 and psi[1] < ROOM) or (psi[1] < 1e-9 and psi[0] > -ROOM) or psi[0] > 1e-9 or psi[1] < -1e-9:
         raise WorkspaceError(
             f"the sector, psi = {psi[0]:.2f} to {psi[1]:.2f} rad, has no room about straight ahead: home is beside the "
@@ -157,18 +204,18 @@ def measure(
     if -psi[0] < ROOM and psi[1] < ROOM:
         raise WorkspaceError(f"the sector, psi = {psi[0]:.2f} to {psi[1]:.2f} rad, is too narrow about straight ahead")
     if -psi[0] < ROOM or psi[1] < ROOM:
-        warnings.append(f"little room in bearing to one side: psi = {psi[0]:.2f} to {psi[1]:.2f} rad")
-    inside = tuple(slice(a, b + 1) for a, b in box[:3])
-    sigma = float(walked.sigma[inside].min())
-    p_x = float(ahead[inside[:2]].min())
-    words = tuple(WORDS[row] for row in WORDS if manner.held & row)
-    measured = Measured(_round(l), _round(psi), _round(z), words, round(sigma, 4), round(p_x, 4), model, manner.yaw)
-    return Result(measured, sentence(manner.held, up), warnings, walked, box, fastest(R, sigma, p_x, base, mount))
+        return [f"little room in bearing to one side: psi = {psi[0]:.2f} to {psi[1]:.2f} rad"]
+    return []
 
 
-def fastest(R: float, sigma: float, p_x: float, base: Base, mount: Mount) -> float:
-    """Return full deflection v [m/s], for a reach R [m], least singular value [m/s] and distance p_x [m] ahead."""
-    if base.omni:  # it carries the hand at the hand's own speed, and its shoulder round at w
+def fastest(R: float, sigma: float, p_x: float, base: Base, mount: Mount, aside: bool = False) -> float:
+    """Return full deflection v [m/s], for a reach R [m], least singular value [m/s] and distance p_x [m] ahead.
+
+    aside: whether the arm leaves what lies about its shoulder to the drive.
+    """
+    if aside:
+        turning = base.v_max
+    elif base.omni:  # it carries the hand at the hand's own speed, and its shoulder round at w
         turning = SHARE_TURN * max(0.0, base.v_max - TURN * math.hypot(mount.s_x, mount.s_y))
     else:
         turning = SHARE_TURN * p_x * max(0.0, base.w_max - TURN)

@@ -40,7 +40,7 @@ def farthest(arm: SpatialArm) -> float:
 
 def share_of(arm: SpatialArm, held: int, postures: Array) -> float:
     """Return the share of `postures` in which the arm has the place and the turnings `held`."""
-    if task.count(held) > len(arm.channels):
+    if task.count(held) - int(arm.aside) > len(arm.channels):
         return 0.0
     speeds = np.array([channel.rate_max for channel in arm.channels])
     hinges = speeds[arm.screws[:, 6] == 0.0]
@@ -57,9 +57,12 @@ def holds(arm: SpatialArm) -> int:
     """
     postures = random_postures(arm, POSTURES, 1)
     if share_of(arm, 0, postures) < SHARE:
+        many = "two" if arm.aside else "three"
         raise SetupError(
-            "the arm cannot place its hand in three directions: what it has are fewer than three ways to move it"
+            f"the arm cannot place its hand in {many} directions: what it has are fewer than {many} ways to move it"
         )
+    if share_of(arm, task.WHOLE, postures) >= SHARE:  # its rows are never alike; those of the others may be
+        return task.WHOLE
     held = 0
     for row in (task.PITCH, task.SPIN, task.THIRD):
         if share_of(arm, held | row, postures) >= SHARE:

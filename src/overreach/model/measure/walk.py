@@ -17,6 +17,8 @@ Cell = tuple[int, int, int]
 
 WIDE = 1.8
 """Bearings [rad] from the arm's x axis that are tried, either way."""
+ONE_BEARING = 0.02
+"""Bearings of an arm that has but one differ by this [rad]."""
 NEAREST, FARTHEST = 0.12, 1.05
 """Lengths l that are tried, in parts of R."""
 UP = 22
@@ -56,6 +58,8 @@ def grid(posture: Posture, coarse: float = 1.0) -> tuple[Array, Array, Array, Ce
     l = posture.l + step_l * np.arange(-max(0, below), max(0, above) + 1)
     wide = round(WIDE / STRIDE_PSI)
     psi = STRIDE_PSI * np.arange(-wide, wide + 1)
+    if posture.manner.aside:
+        psi = np.array((-ONE_BEARING, 0.0, ONE_BEARING))
     z = posture.z + step_z * np.arange(-UP, UP + 1)
     z = z[z > -0.02 * R]
     home = (max(0, below), int(np.argmin(abs(psi - posture.psi))), int(np.argmin(abs(z - posture.z))))

@@ -8,16 +8,19 @@ import mujoco
 import numpy as np
 
 from overreach.arm.mount import Mount
-from overreach.arm.spatial.screws import Array
+from overreach.arm.spatial.screws import Array, forward
 from overreach.errors import SetupError
-from overreach.model.description import Description
+from overreach.model.description import Description, MountTable
 
 STRAIGHT = 1e-6
 HINGE, SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
 class Extracted(NamedTuple):
-    """An arm as it is in a model: where it stands, its screws and hand in the arm's frame, its joints' limits."""
+    """An arm as it is in a model: where it stands, its screws and hand in the arm's frame, its joints' limits.
+
+    aside: whether it cannot move its hand about the shoulder.
+    """
 
     mount: Mount
     screws: Array
@@ -25,6 +28,7 @@ class Extracted(NamedTuple):
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     units: tuple[str, ...]
+    aside: bool
 
 
 def extract(model: mujoco.MjModel, description: Description) -> Extracted:
@@ -60,19 +64,63 @@ def extract(model: mujoco.MjModel, description: Description) -> Extracted:
     hinges = [k for k in range(n) if not screws[k, 6]]
     if not hinges:
         raise SetupError("arm.joints: an arm needs at least one hinge")
-    table = description.mount
-    s_x = float(screws[hinges[0], 3]) if table.s_x is None else table.s_x
-    s_y = float(screws[hinges[0], 4]) if table.s_y is None else table.s_y
-    mount = Mount(s_x, s_y, table.yaw)
-    c, s = np.cos(mount.yaw), np.sin(mount.yaw)
-    turn = np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)))  # base axes -> arm axes
     R_h = data.xmat[hand].reshape(3, 3)
     p_h = R_b.T @ (data.xpos[hand] + R_h @ np.array(description.hand.offset) - p_b)
+    tip = np.concatenate(((R_b.T @ R_h).ravel(), p_h))
+    one_way = only_way(screws, tip, description)
+    mount = mount_of(description.mount, screws[hinges[0], 3:5], one_way)
+    c, s = np.cos(mount.yaw), np.sin(mount.yaw)
+    turn = np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)))  # base axes -> arm axes
+    s_x, s_y = mount.s_x, mount.s_y
     shift = np.array((s_x, s_y, 0.0))
     screws[:, :3] = screws[:, :3] @ turn.T
     screws[:, 3:6] = (screws[:, 3:6] - shift) @ turn.T
     tip = np.concatenate(((turn @ R_b.T @ R_h).ravel(), turn @ (p_h - shift)))
-    return Extracted(mount, screws, tip, tuple(lower), tuple(upper), tuple(units))
+    return Extracted(mount, screws, tip, tuple(lower), tuple(upper), tuple(units), one_way is not None)
+
+
+class OneWay(NamedTuple):
+    """The only way in which an arm moves its hand along the ground. yaw: where it goes [rad]; hand (2,) [m] at home."""
+
+    yaw: float
+    hand: Array
+
+
+def only_way(screws: Array, tip: Array, description: Description) -> OneWay | None:
+    """Return the only way in which an arm moves its hand along the ground at home, if that is a slide's; else None.
+
+    screws, tip: along the base's axes. An arm of hinges that is stretched out has only one way too, but to its side.
+    """
+    n = len(screws)
+    hand, J, places = np.empty(12), np.empty((6, n)), np.empty((n, 3))
+    forward(screws, tip, np.array(description.home), hand, J, places)
+    ways, levers, _ = np.linalg.svd(J[:2])
+    way = ways[:, 0] * (1.0 if float(ways[:, 0] @ hand[9:11]) >= 0.0 else -1.0)
+    if len(levers) > 1 and levers[1] > ONE_WAY * float(way @ hand[9:11]):
+        return None
+    slides = any(screws[k, 6] and abs(float(way @ J[:2, k])) > ALONG for k in range(n))
+    return OneWay(float(np.arctan2(way[1], way[0])), hand[9:11].copy()) if slides else None
+
+
+def mount_of(table: MountTable, hinge: Array, one_way: OneWay | None) -> Mount:
+    """Return where an arm stands: as described; else at its first hinge, or where its only way begins.
+
+    That is the point of its line that is nearest to the base's turning centre.
+    """
+    if one_way is None:
+        x, y, yaw = float(hinge[0]), float(hinge[1]), 0.0
+    else:
+        way = np.array((np.cos(one_way.yaw), np.sin(one_way.yaw)))
+        x, y = (one_way.hand - float(one_way.hand @ way) * way).tolist()
+        yaw = one_way.yaw
+    s_x, s_y = x if table.s_x is None else table.s_x, y if table.s_y is None else table.s_y
+    return Mount(s_x, s_y, yaw if table.yaw is None else table.yaw)
+
+
+ONE_WAY = 0.2
+"""Hinges that move the hand in another way have levers of at most this part of its distance: a wrist's, no arm's."""
+ALONG = 0.99
+"""A slide is along a way where its axis has this much of it."""
 
 
 def _check_order(

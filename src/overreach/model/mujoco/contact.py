@@ -10,7 +10,7 @@ import numpy as np
 
 from overreach.arm.spatial.screws import Array
 from overreach.model.description import Description
-from overreach.model.mujoco.chain import HINGE, joint_of, lock
+from overreach.model.mujoco.chain import HINGE, body_of, joint_of, lock
 
 ALWAYS = 0.75
 """Bodies that touch in so many random postures are neighbours that always do."""
@@ -37,7 +37,8 @@ class Contacts:
         self._upper = np.array([model.jnt_range[joint_of(model, group[0])][1] for group in groups])
         home = np.array(description.home)
         model.geom_margin[:] = 0.0
-        self._neighbours = self._often()
+        never = [[body_of(model, name, "arm.never_touch") for name in pair] for pair in description.arm.never_touch]
+        self._neighbours = self._often() | {(min(pair), max(pair)) for pair in never}
         self.at_home = set(self._near(home)) - self._neighbours
         """Bodies that touch at home, and should not."""
         model.geom_margin[:] = 0.5 * distance / OF_HOME  # of both of a pair together

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 import mujoco
@@ -12,9 +13,10 @@ import mujoco
 from overreach.arm.mount import Mount
 from overreach.arm.spatial.arm import SpatialArm
 from overreach.arm.spatial.manner import Manner
+from overreach.arm.spatial.side import Drive, SideArm
 from overreach.errors import SetupError
 from overreach.model.base import Base
-from overreach.model.description import Description
+from overreach.model.description import BaseTable, Description
 from overreach.model.measure.rank import farthest
 from overreach.model.mujoco.chain import extract
 from overreach.model.mujoco.contact import Contacts
@@ -26,6 +28,8 @@ CONTACT = 0.022
 """Bodies may come as close as this, in parts of R."""
 ALGORITHM = "5"
 """To be changed with the algorithm that measures."""
+OFF_ACROSS = 10.0
+"""How far [degrees] an arm that moves its hand along one line may point off square to the way that its base drives."""
 STILL_M, STILL_RAD = 0.01, 0.105
 """Rates [m/s, rad/s] below which a joint may stand still."""
 
@@ -69,14 +73,34 @@ def parts_of(description: Description, folder: Path) -> Parts:
     if not size > 0.0:
         raise SetupError("hand.approach must be an axis, not 0")
     manner = Manner(1.0, 0.1, approach=(approach[0] / size, approach[1] / size, approach[2] / size))
-    arm = SpatialArm(tuple(channels), found.screws, found.tip, description.home, manner, compiled=False)
-    arm = arm.held(msgspec.structs.replace(manner, reach=farthest(arm)))
     table = description.base
+    own = tuple(channels), found.screws, found.tip, description.home, manner
+    if found.aside:
+        _check_across(found.mount, table)
+        arm: SpatialArm = SideArm(*own, Drive(found.mount.yaw, table.v_max, table.w_max), compiled=False)
+    else:
+        arm = SpatialArm(*own, compiled=False)
+    arm = arm.held(msgspec.structs.replace(arm.manner, reach=farthest(arm)))
     wheels = wheels_of(model, description)
     base = Base(
         table.v_max, table.w_max, table.dv_max, table.dw_max, table.footprint, table.lag, table.kind == "omni", wheels
     )  # fmt: skip
     return Parts(description, arm, found.mount, base, model, _key(model, description), source.warnings)
+
+
+def _check_across(mount: Mount, base: BaseTable) -> None:
+    """Raise SetupError where a base cannot take what an arm that moves its hand along one line leaves to it."""
+    off = math.degrees(math.acos(min(1.0, abs(math.sin(mount.yaw)))))
+    if base.kind == "omni" or off > OFF_ACROSS:
+        why = (
+            "on an omni base" if base.kind == "omni" else
+            f"that lies {off:.0f} degrees off square to the way that the base drives"
+        )  # fmt: skip
+        raise SetupError(
+            f"at home the arm moves its hand along one line only, {why}: no law is for that. The law 'exact' needs an "
+            "arm that also moves its hand about its shoulder; the law 'side' a differential base whose way is square "
+            f"to that line, to {OFF_ACROSS:.0f} degrees"
+        )
 
 
 def _key(model: mujoco.MjModel, description: Description) -> str:
@@ -90,5 +114,10 @@ def _key(model: mujoco.MjModel, description: Description) -> str:
         values = getattr(model, name)
         digest.update((values.round(6) + 0.0 if values.dtype.kind == "f" else values).tobytes())
     own = msgspec.structs.replace(description, workspace={}, name="", summary="", model="")
-    digest.update(msgspec.json.encode(own))
+    told: dict[str, Any] = msgspec.to_builtins(own)
+    del told["mode"]
+    if not told["arm"]["never_touch"]:
+        del told["arm"]["never_touch"]
+    told["mount"]["yaw"] = description.mount.yaw or 0.0
+    digest.update(msgspec.json.encode(told))
     return digest.hexdigest()[:16]

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import os
 from pathlib import Path
 
 import mujoco
 
-from overreach.errors import SetupError, UnknownNameError, told
-from overreach.extras import require
+from overreach.errors import MissingExtraError, SetupError, UnknownNameError, told
+from overreach.extras import pip_line, require
 from overreach.model.mujoco.urdf import Source, read_urdf
 
 BUILTIN = "overreach.model.mujoco"
 MADE = ("mobile4", "mobile7", "omni5", "omni7")
 """Modules there that make a model."""
+PACKAGES = {"stretch_urdf": "stretch"}
+"""Modules that bring models, and the extras that bring them."""
 
 
 def spec_of(model: str, folder: Path) -> Source:
@@ -30,7 +33,23 @@ def spec_of(model: str, folder: Path) -> Source:
         return Source(spec, [], {})
     if kind == "menagerie" and name:
         return spec_from_file(menagerie(name))
+    if kind == "package" and name:
+        return spec_from_file(packaged(name))
     return spec_from_file(folder / model)
+
+
+def packaged(name: str) -> Path:
+    """Return the file MODULE/PATH that an installed package brings; the module itself is not imported."""
+    module, _, path = name.partition("/")
+    try:
+        found = importlib.util.find_spec(module)
+    except ValueError:
+        found = None
+    if found is None or not found.submodule_search_locations:
+        extra = PACKAGES.get(module)
+        how = pip_line(extra) if extra else f"install the package that brings {module!r}"
+        raise MissingExtraError(f"the model {name!r} is not installed here: {how}")
+    return Path(next(iter(found.submodule_search_locations))) / path
 
 
 def menagerie(name: str) -> Path:

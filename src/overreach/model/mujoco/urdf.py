@@ -16,6 +16,8 @@ from overreach.errors import SetupError
 MESHES = (".stl", ".obj", ".msh")
 """Kinds of meshes that MuJoCo reads."""
 MOST_LINKS = 2000
+TOLD = 3
+"""So many names are told of those that were repaired alike."""
 FASTEST = 10.0
 """A joint speed [rad/s, m/s] above which the file is more likely wrong than the joint that fast."""
 
@@ -46,10 +48,17 @@ def read_urdf(path: Path) -> Source:
     if dropped:
         kinds = ", ".join(sorted({Path(name).suffix or name for name in dropped}))
         warnings.append(f"{len(dropped)} collision meshes cannot be read ({kinds}): they are left out")
+    impossible = []
     for link in robot.iter("link"):
         for visual in link.findall("visual"):
             link.remove(visual)
-        _inertia(link, warnings)
+        if _inertia_is_left_out(link):
+            impossible.append(link.get("name", ""))
+    if impossible:
+        warnings.append(f"{_many(impossible, 'link')} with a mass or inertia that no body can have: it is left out")
+    endless = [joint.get("name", "") for joint in robot.findall("joint") if _range_is_left_out(joint)]
+    if endless:
+        warnings.append(f"{_many(endless, 'joint')} with no way between the limits: taken to have none")
     robot[:] = [element for element in robot if element.tag in ("link", "joint")]
     options = ET.SubElement(robot, "mujoco")
     ET.SubElement(
@@ -145,20 +154,36 @@ def _resolved(name: str, path: Path) -> Path | None:
     return found.resolve() if found.is_file() else None
 
 
-def _inertia(link: ET.Element, warnings: list[str]) -> None:
-    """Leave out an inertia that no body can have: MuJoCo then makes one of the geometry."""
+def _many(names: list[str], what: str) -> str:
+    """Return names in words, the first few of many."""
+    more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
+    return f"{len(names)} {what}{'s' if len(names) > 1 else ''} ({', '.join(names[:TOLD])}{more})"
+
+
+def _range_is_left_out(joint: ET.Element) -> bool:
+    """Make a hinge endless whose limits leave it no way, as a gripper's often do: MuJoCo leaves them out as well."""
+    limit = joint.find("limit")
+    if joint.get("type") != "revolute" or limit is None or limit.get("lower", "0") != limit.get("upper", "0"):
+        return False
+    joint.set("type", "continuous")
+    return True
+
+
+def _inertia_is_left_out(link: ET.Element) -> bool:
+    """Leave out an inertia that no body can have, and say so: MuJoCo then makes one of the geometry."""
     inertial = link.find("inertial")
     if inertial is None:
-        return
+        return False
     mass, inertia = inertial.find("mass"), inertial.find("inertia")
     try:
         value = float("nan" if mass is None else mass.get("value", "nan"))
         diagonal = [float("nan" if inertia is None else inertia.get(key, "nan")) for key in ("ixx", "iyy", "izz")]
     except ValueError:
         value, diagonal = math.nan, []
-    if not (value > 0.0 and len(diagonal) == 3 and all(one > 0.0 for one in diagonal)):
-        link.remove(inertial)
-        warnings.append(f"link {link.get('name')!r} has a mass or inertia that no body can have: left out")
+    if value > 0.0 and len(diagonal) == 3 and all(one > 0.0 for one in diagonal):
+        return False
+    link.remove(inertial)
+    return True
 
 
 def _speeds(robot: ET.Element) -> dict[str, float]:
