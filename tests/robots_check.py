@@ -30,7 +30,10 @@ FILE, PAGE = ROOT / "build" / "robots.json", ROOT / "docs" / "robots.md"
 BEGIN, END = "<!-- robots-check: begin -->", "<!-- robots-check: end -->"
 SHOULDERS = {"ur5-ahead": 0.25, "ur5-over": 0.0, "ur5-behind": -0.3}
 """An arm of six joints, of the size of a UR5: where its shoulder is, ahead of the axle [m]."""
-ROBOTS = ("tiago", "tiago#fixed", "mobile7", "mobile7#fixed", "mobile4", "omni7", "omni7#fixed", "omni5", *SHOULDERS)
+ROBOTS = (
+    "tiago", "tiago#fixed", "mobile7", "mobile7#fixed", "mobile4", "omni7", "omni7#fixed", "omni5", *SHOULDERS,
+    "stretch#fixed", "stretch#follow",
+)  # fmt: skip
 SEEDS = (1, 2, 3)
 GUESSES = {"cautious": (0.55, 0.9, 0.8, 0.2), "usual": (0.4, 0.95, 1.0, 0.35)}
 """Workspaces guessed from a data sheet: l from and to, in parts of R; psi [rad] either way; z about home, likewise."""
@@ -83,7 +86,8 @@ def table(report: dict[str, Any]) -> str:
         f"Joint limits passed: {sum(one['joint_limit_violations'] for one in found)}; contacts with itself: "
         f"{sum(one['self_contacts'] for one in found)} ({sum(one['self_contacts'] for one in everything)} with the "
         f"guesses); sideways velocity of a differential base: {max(one['lateral_base_max'] for one in differential):g} "
-        f"m/s; base path of a reach inside: {max(one['reach_base_path'] for one in found):g} m.",
+        f"m/s; base path of a reach inside: {max(one['reach_base_path'] for one in found):.1g} m; mean scale at least "
+        f"{min(one['mean_scale'] for one in found if one['kind'] == 'smooth'):.4f}.",
     ]
     return "\n".join(rows)
 
@@ -131,7 +135,8 @@ def guessed(streams: int) -> list[dict[str, Any]]:
 
 def order(one: dict[str, Any]) -> int:
     """Return where a robot in a mode stands in the list."""
-    return ROBOTS.index(one["robot"] + ("" if one["mode"] == "follow" else f"#{one['mode']}"))
+    in_mode = f"{one['robot']}#{one['mode']}"
+    return ROBOTS.index(in_mode if in_mode in ROBOTS else one["robot"])
 
 
 def main() -> None:
