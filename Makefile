@@ -3,6 +3,7 @@
 # make faults: every fault of SAFETY.md as often as is promised, and its table anew (45 minutes). make soak: 5 minutes,
 # or SOAK=1h, of driving while memory is looked at.
 # make robots-check: 1,000 random streams for each robot, mode and seed, into build/robots.json (an hour).
+# make pictures: the pictures of the documentation, anew.
 # make mutate: whether a test fails for every small change of the gate (15 minutes; not part of make test).
 PYTHON ?= python3
 VENV ?= .venv
@@ -10,7 +11,7 @@ BIN := $(VENV)/bin
 comma := ,
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: drive reproduce test venv lint types bench faults soak robots-check mutate browser headline clean
+.PHONY: drive reproduce test venv lint types bench faults soak robots-check mutate pictures browser headline clean
 
 drive: venv
 	@$(BIN)/overreach drive || [ $$? -eq 130 ]  # Ctrl-C is how it ends
@@ -53,6 +54,11 @@ STREAMS ?= 1000
 
 robots-check: $(VENV)/.ready-dev
 	$(BIN)/python -m tests.robots_check $(STREAMS) build/robots.json
+
+pictures: export PYTHONPATH = .
+pictures: $(VENV)/.ready-dev browser
+	$(BIN)/python docs/pictures.py
+	$(BIN)/python docs/swings.py
 
 mutate: $(VENV)/.ready-mutate
 	$(BIN)/python -m tests.mutation

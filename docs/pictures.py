@@ -1,4 +1,4 @@
-"""Make the pictures of the page and of a workspace, as they are: `PYTHONPATH=. .venv/bin/python docs/pictures.py`."""
+"""Make the pictures of the page and of a workspace, as they are: `make pictures`."""
 
 from __future__ import annotations
 

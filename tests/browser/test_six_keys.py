@@ -15,7 +15,7 @@ from tests.processes import half, robot, until
 pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 
 
-@pytest.fixture(scope="module", params=["mobile7", "omni5"])
+@pytest.fixture(scope="module", params=["omni7", "omni5", "stretch"])
 def in_space(request: pytest.FixtureRequest) -> Iterator[Cockpit]:
     """A robot whose hand turns, and opens and closes."""
     with robot(request.param) as (endpoint, side, observer):

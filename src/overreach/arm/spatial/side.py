@@ -12,7 +12,7 @@ from typing import Any, final
 import msgspec
 import numpy as np
 
-from overreach.arm.chain import Asked, Step
+from overreach.arm.chain import Asked, Point, Step
 from overreach.arm.mount import Mount
 from overreach.arm.spatial.arm import SpatialArm, SpatialChain
 from overreach.arm.spatial.manner import Manner
@@ -88,6 +88,12 @@ class SideChain(SpatialChain):
     def __init__(self, arm: SideArm, joints: tuple[float, ...], mount: Mount) -> None:
         super().__init__(arm, joints, mount)
         self._side = arm
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """From the ground where its line begins through the hinges to the hand: slides have no place of note."""
+        hinges = self.places[self._side.screws[:, 6] == 0.0].tolist()
+        return self._mounted(0.0, 0.0, 0.0), *[self._mounted(*place) for place in hinges], self.hand
 
     @property
     def facing(self) -> float:
