@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from overreach.errors import SetupError
-from overreach.model.description import read_description
+from overreach.model.description import Description, read_description
 from overreach.model.mujoco.describe import describe, run_describe
 from overreach.model.mujoco.robot import parts_of
 from overreach.model.mujoco.source import compiled, spec_from_file
@@ -99,6 +99,78 @@ def test_repairs_are_told(tmp_path: Path) -> None:
     model = compiled(source.spec, "it")
     assert model.njnt == 8
     assert not model.jnt_limited[model.joint("finger").id]
+
+
+LIFT = """<link name="lift_link"/><joint name="lift" type="prismatic"><parent link="base_link"/>
+<child link="lift_link"/><origin xyz="0.1 0 0.2"/><axis xyz="0 0 1"/>
+<limit lower="0" upper="0.4" effort="10" velocity="{speed}"/></joint>"""
+FINGER = """<link name="{name}_link"/><joint name="{name}" type="revolute"><parent link="arm_5_link"/>
+<child link="{name}_link"/><origin xyz="0.15 {y} 0"/><axis xyz="0 0 1"/>
+<limit lower="0" upper="1" effort="10" velocity="2"/></joint><link name="{name}_2_link"/>
+<joint name="{name}_2" type="revolute"><parent link="{name}_link"/><child link="{name}_2_link"/>
+<origin xyz="0.05 0 0"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="10" velocity="2"/></joint>"""
+FOOT = FIXED.format(name="to_base", parent="base_footprint", child="base_link").replace(
+    "/>", '/><origin xyz="0 0 0.08"/>', 1
+)
+SPRING = """<link name="{side}_spring"/><joint name="{side}_spring_joint" type="prismatic"><parent link="base_link"/>
+<child link="{side}_spring"/><axis xyz="0 0 1"/><limit lower="0" upper="0.01" effort="10" velocity="1"/></joint>"""
+
+
+def described(tmp_path: Path, text: str) -> Description:
+    return read_description(describe(written(tmp_path, text))[0])
+
+
+@pytest.mark.parametrize("speed", ["0.035", "0.15"])
+def test_a_lift_slower_than_the_hand_is_locked(speed: str, tmp_path: Path) -> None:
+    """It is put where the middle of its range is, and is no joint of the arm; a quicker one is."""
+    text = urdf(extra=LIFT.format(speed=speed)).replace(
+        'name="arm_1" type="revolute"><parent link="base_link"/>',
+        'name="arm_1" type="revolute"><parent link="lift_link"/>',
+    )
+    found = described(tmp_path, text)
+    slow = float(speed) < 0.08
+    assert found.locked == ({"lift": 0.2} if slow else {})
+    assert len(found.arm.joints) == (5 if slow else 6)
+    parts_of(found, tmp_path)
+
+
+def test_a_hand_of_many_fingers_is_no_part_of_the_arm(tmp_path: Path) -> None:
+    """The arm ends where it branches; the hand is as far out as the fingers begin, which are its gripper."""
+    fingers = "".join(FINGER.format(name=f"digit_{k}", y=0.03 * (k - 1)) for k in range(3))
+    found = described(tmp_path, urdf(extra=fingers))
+    assert found.arm.joints == ("arm_1", "arm_2", "arm_3", "arm_4", "arm_5")
+    assert found.hand.body == "arm_5_link"
+    assert found.hand.approach == (1.0, 0.0, 0.0)
+    assert found.hand.offset == pytest.approx((0.175, 0.0, 0.0))
+    assert len(found.hand.gripper) == 6
+
+
+def test_the_base_is_the_frame_on_the_ground(tmp_path: Path) -> None:
+    """A footprint that carries the base is it, and the wheels stand on its ground; one that it carries is not."""
+    above = described(tmp_path, urdf(extra='<link name="base_footprint"/>' + FOOT))
+    assert above.base.body == "base_footprint"
+    assert above.base.footprint == (0.4, 0.4)
+    below = FIXED.format(name="to_foot", parent="base_link", child="base_footprint")
+    assert described(tmp_path, urdf(extra='<link name="base_footprint"/>' + below)).base.body == "base_link"
+
+
+def test_wheels_on_a_suspension_are_found(tmp_path: Path) -> None:
+    """A slide between base and wheel is no hindrance."""
+    text = urdf(extra="".join(SPRING.format(side=side) for side in ("left", "right")))
+    for side in ("left", "right"):
+        text = text.replace(
+            f'type="continuous"><parent link="base_link"/><child link="{side}_wheel"/>',
+            f'type="continuous"><parent link="{side}_spring"/><child link="{side}_wheel"/>',
+        )
+    assert described(tmp_path, text).base.wheels == ("left_wheel_joint", "right_wheel_joint")
+
+
+def test_an_inertia_that_is_not_positive_is_left_out(tmp_path: Path) -> None:
+    """Moments that are each positive may still be those of no body: the products tell."""
+    text = urdf().replace('iyy="0.01" izz="0.01" ixy="0"', 'iyy="0.01" izz="0.01" ixy="0.05"', 1)
+    source = spec_from_file(written(tmp_path, text))
+    assert ["1 link (base_link)" in line for line in source.warnings] == [True]
+    compiled(source.spec, "it")
 
 
 def test_a_description_names_its_model_from_where_it_lies(tmp_path: Path) -> None:

@@ -53,6 +53,14 @@ def test_what_ships_is_what_is_measured(name: str) -> None:
     assert workspace_of(found, "follow", pytest.fail) == shipped
 
 
+def test_a_home_below_the_ground_is_refused() -> None:
+    """The hand cannot be there: said, with how far, and never chosen as a home."""
+    low = parts("mobile4", home=(0.0, 0.2, 1.2, -0.5))
+    assert low.arm.posture_at_home.z < -0.01
+    with pytest.raises(WorkspaceError, match=r"at home the hand is 0\.\d\d\d m below the ground"):
+        measured(low)
+
+
 def test_every_shipped_table_is_of_its_model() -> None:
     """Each of our robots has its usual mode measured, with the hash of the model that ships."""
     for name in OURS:
@@ -243,7 +251,7 @@ def test_what_is_close_at_home_keeps_half_of_that() -> None:
 
 def test_a_home_that_was_found_has_its_own_hash(capsys: pytest.CaptureFixture[str]) -> None:
     """The table that is printed for a home that was looked for is that of the description with this home in it."""
-    run_workspace("mobile4", "follow", find_home=True, out=None, figure=None)
+    run_workspace("mobile4", "", find_home=True, out=None, figure=None)
     said = capsys.readouterr().out
     home = tuple(json.loads(said.rsplit("\nhome = ", 1)[1].split("\n")[0]))
     printed = tomllib.loads(said[said.index("[workspace.follow]") :])["workspace"]["follow"]

@@ -31,7 +31,7 @@ def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figu
     for warning in parts.warnings:
         print(f"warning: {warning}")
     if find_home:
-        parts = _with_best_home(parts, description_of(parted(robot)[0])[1], mode)
+        parts = _with_best_home(parts, description_of(parted(robot)[0])[1])
     with tqdm(desc="cells tried", unit="", dynamic_ncols=True) as bar:
         result = measured(parts, progress=lambda more: _count(bar, more))
     description, found = parts.description, result.measured
@@ -56,7 +56,7 @@ def _count(bar: Any, more: int) -> None:
     bar.update(more)
 
 
-def _with_best_home(parts: Parts, folder: Path, mode: str) -> Parts:
+def _with_best_home(parts: Parts, folder: Path) -> Parts:
     with tqdm(desc="branches measured", unit="", dynamic_ncols=True) as bar:
 
         def progress(k: int, many: int) -> None:
@@ -71,4 +71,4 @@ def _with_best_home(parts: Parts, folder: Path, mode: str) -> Parts:
     for home in homes[:SHOWN]:
         print(f"home = {list(home.q)}   # {home.volume:.4f} m^3, coarsely")
     print()
-    return parts_in(msgspec.structs.replace(parts.description, home=homes[0].q), folder, mode)
+    return parts_in(msgspec.structs.replace(parts.description, home=homes[0].q), folder, parts.description.mode)

@@ -20,9 +20,10 @@ from overreach.model.base import Base
 from overreach.model.description import Measured
 from overreach.model.measure.box import Box, largest
 from overreach.model.measure.rank import WORDS, holds, sentence
-from overreach.model.measure.walk import OFF, YAW_STRIDE, Walked, walk
+from overreach.model.measure.walk import FLOOR, OFF, YAW_STRIDE, Walked, walk
 from overreach.model.mujoco.contact import Contacts
 
+UNDER = "z = 0 of base.body"
 BEARINGS = 1.05
 """The sector ends at this bearing [rad] from the way that the base drives at the latest, either way; from the arm's x
 axis where the base moves sideways too."""
@@ -151,6 +152,11 @@ def measure(
         )
     if contacts.at_home:
         raise WorkspaceError(f"at home the arm touches its own robot: {contacts.names(contacts.at_home)}")
+    if arm.posture_at_home.z <= FLOOR * R:
+        raise WorkspaceError(
+            f"at home the hand is {-arm.posture_at_home.z:.3f} m below the ground, the plane of {UNDER}: choose a home "
+            "above it"
+        )
     walked = walk(arm, manner.sigma, lambda q: bool(contacts.touching(q)), coarse, progress)
     if walked is None:
         raise WorkspaceError("the arm does not hold its home posture: it is at a joint's limit, or singular")

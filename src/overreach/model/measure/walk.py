@@ -21,6 +21,8 @@ ONE_BEARING = 0.02
 """Bearings of an arm that has but one differ by this [rad]."""
 NEAREST, FARTHEST = 0.12, 1.05
 """Lengths l that are tried, in parts of R."""
+FLOOR = -0.02
+"""The lowest height that is tried, in parts of R."""
 UP = 22
 """Cells above and below home that are tried."""
 OFF = 0.0022
@@ -61,7 +63,7 @@ def grid(posture: Posture, coarse: float = 1.0) -> tuple[Array, Array, Array, Ce
     if posture.manner.aside:
         psi = np.array((-ONE_BEARING, 0.0, ONE_BEARING))
     z = posture.z + step_z * np.arange(-UP, UP + 1)
-    z = z[z > -0.02 * R]
+    z = z[z > FLOOR * R]
     home = (max(0, below), int(np.argmin(abs(psi - posture.psi))), int(np.argmin(abs(z - posture.z))))
     return l, psi, z, home
 

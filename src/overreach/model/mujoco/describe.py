@@ -1,8 +1,10 @@
 """A first description of a robot, guessed from its model file alone. Each guess is marked as one.
 
-base    the free body, or the root; its wheels the endless hinges whose axis is level, two with one axis
-arm     the longest chain of hinges and slides, neither wheels nor fingers, from the base to a hand
-hand    the body at its end; the fingers' joints beyond it, its gripper
+base    the free body, or the root; the frame on the ground, if one carries it; its wheels the endless hinges whose axis
+        is level, on it or on its suspension
+arm     the longest chain of hinges and slides, neither wheels nor fingers, from the base to a hand: up to where it
+        branches into fingers; a lift that is slower than the hand is to go up and down is locked where it is
+hand    the body at its end, as far out as its fingers are; their joints, its gripper
 """
 
 from __future__ import annotations
@@ -31,6 +33,10 @@ USUAL_SPEED, USUAL_LIFT = 1.5, 0.1
 """Joint speeds [rad/s, m/s] where the model has none: to be looked up."""
 ACCELERATION = 8.0
 """Accelerations are guessed as this many times the speed [1/s^2 per 1/s]."""
+SLOW_LIFT = 0.08
+"""A slide at the beginning of an arm that is slower than this [m/s] would leave the posture behind: it is locked."""
+SHORTEST = 3
+"""An arm has so many joints at least."""
 NOT_AN_ARM = ("head", "wheel", "caster", "finger", "gripper", "camera", "neck", "pan_tilt", "leg")
 RIGHT = ("right", "_r_")
 
@@ -44,6 +50,8 @@ class Guess(NamedTuple):
     joints: tuple[str, ...]
     hand: str
     approach: tuple[float, float, float]
+    ahead: float
+    locked: tuple[str, ...]
     gripper: tuple[str, ...]
     speeds: tuple[tuple[float, bool], ...]
     footprint: tuple[float, float]
@@ -61,15 +69,21 @@ def guess(model: mujoco.MjModel, speeds: dict[str, float], what: str) -> Guess:
     endless = [j for j in hinges if not model.jnt_limited[j]]
     wheels = [
         j for j in endless
-        if int(model.body_parentid[model.jnt_bodyid[j]]) == base and abs(float(data.xaxis[j] @ up)) < LEVEL
+        if _above(model, int(model.jnt_bodyid[j]), base) and abs(float(data.xaxis[j] @ up)) < LEVEL
+        and not set(_joints_to(model, int(model.jnt_bodyid[j]), base)[:-1]) & set(hinges)
     ]  # fmt: skip
     chain, others = _arm(model, base, set(wheels), what)
     last = int(model.jnt_bodyid[chain[-1]])
     fingers = [j for j in range(model.njnt) if j not in chain and _above(model, int(model.jnt_bodyid[j]), last)]
+    slides = {j for j in chain if int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_SLIDE)}
+    slow = [j for j in chain if j in slides and speeds.get(model.joint(j).name, USUAL_LIFT) < SLOW_LIFT]
+    locked = tuple(model.joint(j).name for j in slow if chain.index(j) < chain.index(_first(chain, slides)))
+    chain = [j for j in chain if model.joint(j).name not in locked]
     names = [model.joint(j).name for j in chain]
+    approach = _approach(model, data, last)
     found = []
     for j, name in zip(chain, names, strict=True):
-        slide = int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        slide = j in slides
         found.append((speeds[name], True) if name in speeds else (USUAL_LIFT if slide else USUAL_SPEED, False))
     return Guess(
         base=model.body(base).name,
@@ -77,12 +91,29 @@ def guess(model: mujoco.MjModel, speeds: dict[str, float], what: str) -> Guess:
         wheels=tuple(model.joint(j).name for j in wheels),
         joints=tuple(names),
         hand=model.body(last).name,
-        approach=_approach(model, data, last),
+        approach=approach,
+        ahead=_ahead(model, data, last, fingers, approach),
+        locked=locked,
         gripper=tuple(model.joint(j).name for j in fingers),
         speeds=tuple(found),
         footprint=_footprint(model, data, base),
         chains=tuple(others),
     )
+
+
+def _first(chain: list[int], slides: set[int]) -> int:
+    """Return the first joint of a chain that is a hinge, or its last."""
+    return next((j for j in chain if j not in slides), chain[-1])
+
+
+def _ahead(
+    model: mujoco.MjModel, data: mujoco.MjData, hand: int, fingers: list[int], approach: tuple[float, float, float]
+) -> float:
+    """Return how far along its approach axis the hand's fingers are [m]: 0 where it has none."""
+    if not fingers:
+        return 0.0
+    away = np.mean([data.xanchor[j] for j in fingers], axis=0) - data.xpos[hand]
+    return max(0.0, round(float(data.xmat[hand].reshape(3, 3).T @ away @ approach), 3))
 
 
 def _omni(data: mujoco.MjData, wheels: list[int]) -> bool:
@@ -100,11 +131,14 @@ def _base(model: mujoco.MjModel, what: str) -> int:
     if not carrying:
         raise SetupError(f"{what} has no base: no body that carries joints")
     root = carrying[0]
-    for part in ("base_link", "base_footprint"):  # a root may be a bare frame above the base
-        for body in range(1, model.nbody):
-            if part in model.body(body).name and _above(model, body, root):
-                return body
-    return root
+    named = {
+        part: next((b for b in range(1, model.nbody) if part in model.body(b).name and _above(model, b, root)), 0)
+        for part in ("base_footprint", "base_link")
+    }
+    foot, link = named["base_footprint"], named["base_link"]
+    if foot and (not link or _above(model, link, foot)):  # it is on the ground, and carries the base
+        return foot
+    return link or root  # a root may be a bare frame above the base
 
 
 def _above(model: mujoco.MjModel, body: int, root: int) -> bool:
@@ -131,9 +165,10 @@ def _arm(model: mujoco.MjModel, base: int, wheels: set[int], what: str) -> tuple
     for body in range(1, model.nbody):
         if _above(model, body, base) and body not in model.body_parentid:
             joints = _joints_to(model, body, base)
+            joints = joints[: _palm(model, joints)]
             while joints and _is_finger(model, joints[-1]):
                 joints.pop()
-            if len(joints) > 2 and not wheels & set(joints) and not _named(model, joints):
+            if len(joints) >= SHORTEST and not wheels & set(joints) and not _named(model, joints):
                 chains.append((body, joints))
     if not chains:
         raise SetupError(f"{what} has no arm: no chain of three joints or more on the base")
@@ -143,6 +178,15 @@ def _arm(model: mujoco.MjModel, base: int, wheels: set[int], what: str) -> tuple
     chosen = (left or best)[0][1]
     ends = {model.body(int(model.jnt_bodyid[joints[-1]])).name for _, joints in chains if joints != chosen}
     return chosen, sorted(ends)
+
+
+def _palm(model: mujoco.MjModel, joints: list[int]) -> int:
+    """Return how many joints of a chain there are up to the one, behind the third, that carries several."""
+    carried_by = [joint for j in range(model.njnt) for joint in _joints_to(model, int(model.jnt_bodyid[j]), 0)[-2:-1]]
+    for k, joint in enumerate(joints, start=1):
+        if k > SHORTEST and carried_by.count(joint) > 1:
+            return k
+    return len(joints)
 
 
 def _is_finger(model: mujoco.MjModel, joint: int) -> bool:
@@ -173,10 +217,12 @@ def _approach(model: mujoco.MjModel, data: mujoco.MjData, hand: int) -> tuple[fl
 
 
 def _footprint(model: mujoco.MjModel, data: mujoco.MjData, base: int) -> tuple[float, float]:
+    """Return length and width [m] of what is fixed to the base."""
     half = np.zeros(2)
+    rigid = [b for b in range(1, model.nbody) if _above(model, b, base) and not _joints_to(model, b, base)]
     R, p = data.xmat[base].reshape(3, 3), data.xpos[base]
     for geom in range(model.ngeom):
-        if int(model.geom_bodyid[geom]) == base:
+        if int(model.geom_bodyid[geom]) in rigid:
             at = R.T @ (data.geom_xpos[geom] - p)
             turn = np.abs(R.T @ data.geom_xmat[geom].reshape(3, 3))
             reach = np.abs(at) + turn @ (np.abs(model.geom_aabb[geom, :3]) + model.geom_aabb[geom, 3:])
@@ -185,14 +231,19 @@ def _footprint(model: mujoco.MjModel, data: mujoco.MjData, base: int) -> tuple[f
     return (round(length, 2) or 0.5), (round(width, 2) or 0.5)
 
 
-def toml(found: Guess, name: str, model: str, home: tuple[float, ...]) -> str:
-    """Return the description, with each guess marked."""
+def toml(
+    found: Guess, name: str, model: str, home: tuple[float, ...], places: list[tuple[str, float]] | None = None
+) -> str:
+    """Return the description, with each guess marked. places: of the joints that are locked [m]."""
+    places = places or []
     guessed = "# guessed: "
     speeds = ", ".join(f"{speed:g}" for speed, _ in found.speeds)
     unknown = [joint for joint, (_, known) in zip(found.joints, found.speeds, strict=True) if not known]
     note = f"   {guessed}the model has none for {', '.join(unknown)}: look them up" if unknown else ""
     wheels = ", ".join(f'"{wheel}"' for wheel in found.wheels)
     times = f"   {guessed}{ACCELERATION:g} times the speed"
+    offset = ", ".join(f"{found.ahead * one + 0.0:g}" for one in found.approach)
+    slow = "".join(f"\n[locked]\n{lift} = {at:g}   {guessed}slower than the hand is to go\n" for lift, at in places)
     others = f"   # other chains end at {', '.join(found.chains)}" if found.chains else ""
     return f"""\
 # A first description, from the model file alone. Look at every line that is marked as guessed.
@@ -218,10 +269,10 @@ acceleration = [{", ".join(f"{ACCELERATION * speed:g}" for speed, _ in found.spe
 
 [hand]
 body = "{found.hand}"
-offset = [0, 0, 0]   {guessed}where the hand is, in this body [m]
+offset = [{offset}]   {guessed}where the hand is, in this body [m]
 approach = [{", ".join(f"{one:g}" for one in found.approach)}]   {guessed}where it points, in this body
 gripper = [{", ".join(f'"{joint}"' for joint in found.gripper)}]
-"""
+{slow}"""
 
 
 def middle(model: mujoco.MjModel, joints: tuple[str, ...]) -> tuple[float, ...]:
@@ -243,7 +294,9 @@ def describe(path: Path, named: str = "") -> tuple[str, list[str], list[str]]:
     model = compiled(source.spec, f"the model file {str(path)!r}")
     found = guess(model, source.speeds, f"the model file {str(path)!r}")
     unknown = [joint for joint, (_, known) in zip(found.joints, found.speeds, strict=True) if not known]
-    return toml(found, path.stem, named or path.name, middle(model, found.joints)), source.warnings, unknown
+    places = list(zip(found.locked, middle(model, found.locked), strict=True))
+    text = toml(found, path.stem, named or path.name, middle(model, found.joints), places)
+    return text, source.warnings, unknown
 
 
 def run_describe(path: Path, out: Path | None) -> None:

@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import mujoco
+import numpy as np
 
 from overreach.errors import SetupError
 
 MESHES = (".stl", ".obj", ".msh")
 """Kinds of meshes that MuJoCo reads."""
+MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 MOST_LINKS = 2000
 TOLD = 3
 """So many names are told of those that were repaired alike."""
@@ -177,10 +179,11 @@ def _inertia_is_left_out(link: ET.Element) -> bool:
     mass, inertia = inertial.find("mass"), inertial.find("inertia")
     try:
         value = float("nan" if mass is None else mass.get("value", "nan"))
-        diagonal = [float("nan" if inertia is None else inertia.get(key, "nan")) for key in ("ixx", "iyy", "izz")]
+        xx, yy, zz, xy, xz, yz = [float("nan" if inertia is None else inertia.get(key, "0")) for key in MOMENTS]
     except ValueError:
-        value, diagonal = math.nan, []
-    if value > 0.0 and len(diagonal) == 3 and all(one > 0.0 for one in diagonal):
+        value = xx = yy = zz = xy = xz = yz = math.nan
+    whole = np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+    if value > 0.0 and np.isfinite(whole).all() and float(np.linalg.eigvalsh(whole)[0]) > 0.0:
         return False
     link.remove(inertial)
     return True
