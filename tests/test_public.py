@@ -245,6 +245,6 @@ def test_nothing_that_moves_a_robot_can_switch_the_bounds_off() -> None:
         "guard": {"channels", "ramp_s"},
         "write": {"wanted", "motion", "dt"},
     }
-    assert set(Settings.__struct_fields__) == {"workspace", "law", "blend", "frame", "speed_scale"}
+    assert set(Settings.__struct_fields__) == {"workspace", "law", "blend", "frame", "speed_scale", "hand"}
     source = (ROOT / "run" / "law_alone.py").read_text()
     assert "overreach.robots" not in source

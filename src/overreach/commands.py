@@ -16,6 +16,7 @@ Repeated = Annotated[tuple[str, ...], tyro.conf.UseAppendAction]
 def drive(
     robot: Annotated[str, tyro.conf.Positional] = "mobile7",
     mode: str = "",
+    hand: str = "",
     port: int | None = None,
     host: str = "127.0.0.1",
     allow_host: Repeated = (),
@@ -31,6 +32,7 @@ def drive(
     Args:
         robot: A name (see `overreach robots`), a TOML or a model file.
         mode: How its hand is held: follow, fixed, level or free.
+        hand: The hand that is driven alone, of a robot that has several; by default they can be driven in turn.
         port: Port of the page; by default 8420, or a free one where that is taken.
         host: Address the page is served at. Anyone who can reach it can drive the robot.
         allow_host: A further name of this machine, such as robot.local, that the page may be opened by; repeatable.
@@ -44,13 +46,14 @@ def drive(
     from overreach.cockpit.drive import run_drive
     from overreach.plugs import in_mode
 
-    run_drive(in_mode(robot, mode), host, port, rate, browser, law, set, allow_host, hosted, max_delay)
+    run_drive(in_mode(robot, mode, hand), host, port, rate, browser, law, set, allow_host, hosted, max_delay)
 
 
 @app.command
 def robot(
     robot: Annotated[str, tyro.conf.Positional] = "mobile7",
     mode: str = "",
+    hand: str = "",
     listen: str = "tcp/127.0.0.1:7460",
     rate: float = 200.0,
     name: str = "",
@@ -65,6 +68,7 @@ def robot(
     Args:
         robot: A name (see `overreach robots`), a TOML or a model file.
         mode: How its hand is held: follow, fixed, level or free.
+        hand: The hand that is driven alone, of a robot that has several; by default they can be driven in turn.
         listen: Endpoint to listen at, HOST:PORT or tcp/HOST:PORT.
         rate: Rate of the control loop [Hz], 50 to 1000.
         name: Its name in the network, by default the robot's own; two robots need two names.
@@ -79,7 +83,8 @@ def robot(
     from overreach.plugs import in_mode
     from overreach.robot_side.process import run_robot
 
-    run_robot(in_mode(robot, mode), listen, rate, parent, name, Choice(law, dict(assignments(set))), hosted, max_delay)
+    which, chosen = in_mode(robot, mode, hand), Choice(law, dict(assignments(set)))
+    run_robot(which, listen, rate, parent, name, chosen, hosted, max_delay)
 
 
 @app.command
@@ -111,6 +116,7 @@ def simulate(
     scenario: Annotated[str, tyro.conf.Positional],
     robot: str = "",
     mode: str = "",
+    hand: str = "",
     law: str = "",
     set: tuple[str, ...] = (),
     out: Path | None = None,
@@ -123,6 +129,7 @@ def simulate(
             dither_pushed) or a TOML file.
         robot: Robot to run it on: a name (see `overreach robots`) or a file; by default the scenario's own.
         mode: How its hand is held: follow, fixed, level or free.
+        hand: The hand that is driven, of a robot that has several.
         law: Name of the law (see `overreach laws`); by default the one that suits the robot.
         set: Parameters of the law, NAME=VALUE (see `overreach laws`).
         out: CSV file to write, one row per step.
@@ -142,7 +149,7 @@ def simulate(
 
     if out is not None:
         check_writable(out, "--out")
-    loaded = load_scenario(scenario, in_mode(robot, mode))
+    loaded = load_scenario(scenario, in_mode(robot, mode, hand))
     made = law_of(loaded, law, assignments(set))
     run = run_scenario(loaded, made)
     if out is not None and run.spatial:
@@ -194,6 +201,7 @@ def bench(robot: str = "", mode: str = "", json: Path | None = None) -> None:
 def workspace(
     robot: Annotated[str, tyro.conf.Positional],
     mode: str = "",
+    hand: str = "",
     find_home: bool = False,
     out: Path | None = None,
     figure: Path | None = None,
@@ -203,17 +211,19 @@ def workspace(
     Args:
         robot: A name (see `overreach robots`) or a TOML file.
         mode: How the hand is held: follow, fixed, level or free; by default as the description says, else follow.
+        hand: The hand that is driven, of a robot that has several.
         find_home: Look for home postures first, and measure from the best one.
         out: TOML file to put the table into; a description that is there keeps the rest.
         figure: File to draw to, as its suffix says: SVG, PNG or PDF.
     """
     from overreach.files import check_writable
     from overreach.model.measure.command import run_workspace
+    from overreach.plugs import in_mode
 
     for path, option in ((out, "--out"), (figure, "--figure")):
         if path is not None:
             check_writable(path, option)
-    run_workspace(robot, mode, find_home, out, figure)
+    run_workspace(in_mode(robot, "", hand), mode, find_home, out, figure)
 
 
 @app.command
@@ -221,6 +231,7 @@ def check(
     robot: Annotated[str, tyro.conf.Positional] = "",
     all: Annotated[bool, tyro.conf.FlagCreatePairsOff] = False,
     mode: str = "",
+    hand: str = "",
     streams: int = 200,
     seed: int = 0,
     json: Path | None = None,
@@ -233,6 +244,7 @@ def check(
         all: Instead, every property of the law for every robot that ships, in each of its modes; exit code 1 if one is
             not kept.
         mode: How the hand is held: follow, fixed, level or free; by default as the description says, else follow.
+        hand: The hand that is driven, of a robot that has several.
         streams: How many streams of each kind, smooth ones and stick steps: 20 s each.
         seed: Of the streams.
         json: File to write the numbers to.
@@ -240,10 +252,11 @@ def check(
     """
     from overreach.check.every import run_one_or_all
     from overreach.files import check_writable
+    from overreach.plugs import in_mode
 
     if json is not None:
         check_writable(json, "--json")
-    if not run_one_or_all(robot, all, mode, streams, seed, json, jobs):
+    if not run_one_or_all(in_mode(robot, "", hand), all, mode, streams, seed, json, jobs):
         raise SystemExit(1)
 
 

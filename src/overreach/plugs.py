@@ -142,10 +142,11 @@ def load_model(which: str) -> Model:
     return load(which)
 
 
-def in_mode(which: str, mode: str) -> str:
-    """Return a robot, and the mode in which its hand is held if one is given, as one text."""
-    from overreach.model.catalogue import IN_MODE
+def in_mode(which: str, mode: str, hand: str = "") -> str:
+    """Return a robot, the one of its hands that is driven, and how that is held, where they are given, as one text."""
+    from overreach.model.catalogue import HAND, IN_MODE
 
+    which = f"{which}{HAND}{hand}" if hand else which
     return f"{which}{IN_MODE}{mode}" if mode else which
 
 
@@ -154,7 +155,7 @@ def check_model_name(which: str, others: Sequence[str] = ()) -> None:
 
     others: further names that are valid.
     """
-    from overreach.model.catalogue import IN_MODE, description_of, is_file
+    from overreach.model.catalogue import IN_MODE, description_of, handless, is_file
     from overreach.model.description import check_mode
 
     name, _, mode = which.partition(IN_MODE)
@@ -164,6 +165,11 @@ def check_model_name(which: str, others: Sequence[str] = ()) -> None:
         description_of(name)
         return
     known = sorted({*model_names(), *others})
+    name, hand = handless(name)
+    if name in model_names() and name not in names(MODELS):
+        description_of(which.partition(IN_MODE)[0])  # it may not have such a hand
+    elif hand:
+        raise SetupError(f"the robot {name!r} has one hand: there is no {hand!r}")
     if name not in known:
         raise UnknownNameError("robot", name, known, "A file's name must end in .toml, .xml or .urdf.")
     if mode and name in {*names(MODELS), *others}:

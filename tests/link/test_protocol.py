@@ -25,6 +25,7 @@ FINGERPRINTS = {
     4: "0ad8f1bee0b373b8",
     5: "60d5d345c4cab49f",
     6: "5d211e1676af9b8e",
+    7: "18db4c5f6ecf4010",
 }
 """Protocol -> what its messages are, docstrings included: what a field means stands there."""
 

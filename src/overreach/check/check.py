@@ -15,8 +15,7 @@ from overreach.arm.spatial.screws import Array
 from overreach.check.driven import drive
 from overreach.check.judge import Judged, judge
 from overreach.check.streams import DT_S, stream
-from overreach.errors import SetupError
-from overreach.model.catalogue import load, parts_for
+from overreach.model.catalogue import load, load_one, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.mujoco.contact import Contacts
 from overreach.model.workspace import Workspace
@@ -66,9 +65,8 @@ class Found(Record, frozen=True):
 
 @cache
 def _robot(which: str) -> tuple[DescribedRobot, Contacts]:
-    model = load.__wrapped__(which)  # anew: with compiled code, if that has been made since
-    if not isinstance(model, DescribedRobot):
-        raise SetupError(f"{which!r} is not a robot in space: there is nothing to check")
+    load.cache_clear()  # anew: with compiled code, if that has been made since
+    model = load_one(which)
     return model, parts_for(which).contacts(HALF_DISTANCE)
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import cast
 
 import mujoco
 import numpy as np
 
 from overreach.arm.spatial.screws import Array
-from overreach.model.catalogue import load, parts_for
-from overreach.model.described import DescribedRobot
+from overreach.model.catalogue import load_one, parts_for
 from overreach.model.measure.rank import sentence
 from overreach.model.mujoco.chain import base_frame
 from overreach.model.mujoco.robot import Parts
@@ -28,8 +26,7 @@ SLOW, FAST = 0.05, 10.0
 
 def facts(which: str) -> list[str]:
     """Return lines on what was found of a robot, and what looks wrong. Raises SetupError."""
-    parts = parts_for(which)
-    model = cast(DescribedRobot, load(which))
+    model, parts = load_one(which), parts_for(which)
     arm, space = model.arm, model.workspace
     up = float((arm.R_home @ np.array(arm.manner.approach))[2])
     joints = ", ".join(channel.moves for channel in arm.channels)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import cast
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from overreach.check.check import check
 from overreach.check.driven import Driven, drive
 from overreach.check.judge import in_world
 from overreach.check.streams import DT_S
-from overreach.model.catalogue import load
+from overreach.model.catalogue import load_one
 from overreach.model.described import DescribedRobot
 from overreach.types import Record
 
@@ -50,7 +49,7 @@ def properties(
     which: str, streams: int, seed: int, jobs: int = 0, progress: Callable[[int], None] = lambda _: None
 ) -> list[Property]:
     """Return the properties of a robot. progress: called with the number of streams done. Raises SetupError."""
-    model = cast(DescribedRobot, load(which))
+    model = load_one(which)
     found: list[Property] = []
 
     def add(name: str, value: float, limit: float, least: bool = False) -> None:

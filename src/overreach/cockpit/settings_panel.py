@@ -41,6 +41,7 @@ class SettingsPanel:
         self._groups: dict[tuple[str, str], ui.element] = {}
         with ui.element("section").classes("card").props('id=settings aria-label="Settings"'):
             ui.html("<h2>Settings</h2>", sanitize=False)
+            self._hand = self._toggle("hand", "Hand", list(welcome.hands)) if welcome.hands else None
             self._law = self._select("law", "Law", self._laws(shown))
             self._parameters("law", welcome.laws)
             self._frame = self._toggle("frame", "Command frame", list(welcome.axes))
@@ -61,8 +62,8 @@ class SettingsPanel:
     def differs(self, welcome: Welcome) -> bool:
         """Say whether another robot side offers other things to choose from."""
         own = self.welcome
-        return (own.laws, own.blends, own.reach, own.defaults, own.axes) != (
-            welcome.laws, welcome.blends, welcome.reach, welcome.defaults, welcome.axes,
+        return (own.laws, own.blends, own.reach, own.defaults, own.axes, own.hands) != (
+            welcome.laws, welcome.blends, welcome.reach, welcome.defaults, welcome.axes, welcome.hands,
         )  # fmt: skip
 
     @staticmethod
@@ -117,7 +118,8 @@ class SettingsPanel:
         toggle = ui.toggle(options, value=value if isinstance(value, str) else value.name)
 
         def changed(value: str) -> Change:
-            chosen: Any = Frame(value) if field == "frame" else self._choice(field, value)
+            made = {"blend": lambda name: self._choice(field, name), "frame": Frame}
+            chosen: Any = made.get(field, str)(value)
             return lambda settings: _with(settings, **{field: chosen})
 
         toggle.on_value_change(self._handler(changed))
@@ -200,6 +202,8 @@ class SettingsPanel:
         self._quiet = True
         welcome, space = self.welcome, settings.workspace
         self._law.set_options(self._laws(settings), value=settings.law.name)
+        if self._hand is not None:
+            self._hand.value = settings.hand
         self._frame.value = settings.frame
         self._blend.value = settings.blend.name
         self._speed.value = settings.speed_scale

@@ -13,6 +13,7 @@ from overreach.arm.polar import wrap
 from overreach.control.bounds import Bounds
 from overreach.control.decision import Decision
 from overreach.control.governed import Governor, amid, slipped
+from overreach.control.reported import reported
 from overreach.control.solved import Solved
 from overreach.errors import LONGEST_NAME, SetupError, told
 from overreach.gate.feedback import Feedback
@@ -21,9 +22,9 @@ from overreach.gate.limits import limit_speed
 from overreach.law.body import CarryingPlanner, Planner, UnusableError, WholeBody, check_fits, checked
 from overreach.law.frame import FRAMES, heading_rate, meant, meant_by_tool
 from overreach.law.recentre import NOT_CARRIED
+from overreach.model.handed import hand_of
 from overreach.model.model import Model, channels
 from overreach.types import (
-    FLOATS,
     Frame,
     HandTwist,
     PolarState,
@@ -35,8 +36,6 @@ from overreach.types import (
 from overreach.verdicts import Motion, Verdict, weightier
 
 NO_TWIST, NO_MOTION = Twist(), HandTwist()
-UNIT = 0.01
-"""How far the square of an attitude's quaternion may be from 1."""
 MOVING = Verdict.MOVING  # used a dozen times per tick: a module's name is faster to look up than an enum's member
 
 _with = msgspec.structs.replace
@@ -51,21 +50,25 @@ class HandController:
     """
 
     def __init__(self, model: Model, law: WholeBody, ramp_s: float = 0.0) -> None:
-        self.model = model
         all_of_them = channels(model)
+        self.guard, self._feedback = Guard(all_of_them, ramp_s), Feedback(all_of_them)
+        self._take(model)
+        self._theta_e: float | None = None
+        self.frame, self._angle = law.frame, FRAMES[law.frame]
+        self.configure(law)
+        self.restart()
+
+    def _take(self, model: Model) -> None:
+        """Take a robot's arm for the one that is driven."""
+        self.model = model
         self._arm, self._mount, self._base = model.arm, model.mount.three, model.base
         self._still = (0.0,) * len(model.arm.channels)
         self._governs = governs(model.arm)
         self._aside = is_aside(model.arm)
         self._whole = bool(getattr(model.arm, "whole", True))
-        self.guard = Guard(all_of_them, ramp_s)
         bounds = self._bounded(model)
         self._governor = Governor(model, bounds, self.guard)
         self._solved = Solved(model, bounds)
-        self._feedback = Feedback(all_of_them)
-        self.frame, self._angle = law.frame, FRAMES[law.frame]
-        self.configure(law)
-        self.restart()
 
     def _bounded(self, model: Model) -> Bounds:
         return Bounds(model, self.guard)
@@ -73,13 +76,23 @@ class HandController:
     def configure(self, law: WholeBody, model: Model | None = None, planner: Planner | None = None) -> None:
         """Change the law. Changes nothing where it raises.
 
-        model: the same robot with another workspace; planner: that of the law for it, where it has been made before.
+        model: the same robot with another workspace, or at rest with another of its hands driven; planner: that of the
+        law for it, where it has been made before.
         """
         model = model or self.model
         check_fits(law, model)
-        if model.mount != self.model.mount or len(model.arm.channels) != len(self._still):
+        other_hand = hand_of(model) != hand_of(self.model)
+        moved = model.mount != self.model.mount and not other_hand
+        if moved or len(model.arm.channels) != len(self._still):
             raise SetupError("a law is changed for the same robot: its mount and its joints stay as they are")
+        if other_hand and any(self.guard.written):
+            raise SetupError("Let go first: another hand is driven only from rest.")
         name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
+        if other_hand:
+            self._take(model)
+            self._theta_e = None
+            self._shares = 0.0, 0.0
+            self.chain = self._arm.at(self._believed.q, model.mount)
         self.model = model
         self._governor.model = model
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
@@ -88,7 +101,7 @@ class HandController:
     def restart(self) -> None:
         """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
         start = self.model.start
-        self._theta_e: float | None = None
+        self._theta_e = None
         self._governor.restart()
         self._now = 0.0
         self._shares = (0.0, 0.0)
@@ -195,22 +208,7 @@ class HandController:
                 return
             state = self._believed
         self._now = now if now is not None else state.t if state.t > stamp else self._now + dt
-        pose, motion, q, dq = astuple(state.pose), astuple(state.motion), state.q, state.dq
-        numbers = (state.t, *pose, *motion, state.gripper, *state.ages, state.delay)
-        if set(map(type, (*numbers, *q, *dq))) != FLOATS or not type(q) is type(dq) is tuple:
-            # Drivers like to report a quaternion alone, numbers of numpy, or a list that they fill again and again.
-            state = state.plain
-            pose, motion, q, dq = astuple(state.pose), astuple(state.motion), state.q, state.dq
-            numbers = state.numbers
-        x, y, _, q_w, q_x, q_y, q_z, yaw = pose
-        where, rates = (complex(x, y), yaw, *q), (motion[0], motion[5], *dq)
-        if self._base.omni:
-            where, rates = (where[0], *where), (motion[0], motion[1], *rates[1:])
-        wrong = self._feedback.check(state.t, where, rates, self._now)
-        if not wrong and not isfinite(sum(numbers)):
-            wrong = "The robot's feedback of the base is not finite."
-        elif not wrong and not -UNIT <= q_w * q_w + q_x * q_x + q_y * q_y + q_z * q_z - 1.0 <= UNIT:
-            wrong = "The robot's feedback of the base's attitude is no unit quaternion."
+        state, wrong = reported(state, self._feedback, self._base.omni, self._now)
         if wrong:
             self.guard.latch(wrong)
         elif state.t >= self._feedback.stamp:

@@ -134,6 +134,10 @@ class Hosted:
         if self._report.failed:
             raise RobotFault(self._report.failed)
 
+    def choose(self, hand: str) -> None:
+        """Take the gripper that is written and reported for that of `hand`, from the next write on."""
+        self._ask = _with(self._ask, hand=hand)
+
     def arm(self, now: float) -> None:
         """Let the next write count, though the loop was away from a robot that moved."""
         self._ask = _with(self._ask, arms=self._ask.arms + 1)

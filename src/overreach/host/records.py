@@ -15,7 +15,7 @@ class Ask(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     number: of this message; now [s]: begin of the loop's period; due [s]: until when the rates are good; rates [m/s,
     rad/s]: channel by channel, none before the first write; gripper: its opening, 0 to 1, None to leave it; arms,
-    restarts, stops: counts.
+    restarts, stops: counts; hand: the one that the gripper is of, of a robot with several.
     """
 
     number: int = 0
@@ -26,6 +26,7 @@ class Ask(msgspec.Struct, frozen=True, array_like=True, gc=False):
     arms: int = 0
     restarts: int = 0
     stops: int = 0
+    hand: str = ""
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, gc=False):

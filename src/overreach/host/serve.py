@@ -6,7 +6,7 @@ import contextlib
 import os
 import select
 from collections.abc import Callable
-from typing import final
+from typing import cast, final
 
 import msgspec
 
@@ -15,7 +15,7 @@ from overreach.gate.watchdog import Rates, Watchdog
 from overreach.host.mailbox import Mailbox
 from overreach.host.records import Ask, Report, decode_ask, encode
 from overreach.model.model import channels
-from overreach.robots.base import Robot, sentence
+from overreach.robots.base import Handed, Robot, sentence
 from overreach.types import RobotState
 
 AHEAD_S = 0.0005
@@ -73,6 +73,8 @@ class Host:
         before, self._ask = self._ask, ask
         if ask.rates:
             self._look = ask.now + self._period - self._ahead
+        if ask.hand != before.hand:
+            cast(Handed, self._robot).choose(ask.hand)
         if ask.arms > before.arms:
             self._unarmed = _failure("armed", self._robot.arm, now)
         if ask.rates:

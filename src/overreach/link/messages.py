@@ -23,7 +23,7 @@ from overreach.parameters import Parameter
 from overreach.requests import ArmRequest, DisarmRequest, ResetRequest, RestartRequest, StopRequest
 from overreach.types import BaseTwist, Command, Frame, Pose, Record, Twist
 
-PROTOCOL = 6
+PROTOCOL = 7
 """Raised when a message changes its meaning; both halves must use the same (a test checks that)."""
 
 LONGEST = 4096
@@ -57,7 +57,8 @@ class Settings(Record, frozen=True):
     """What an operator may change while the robot runs.
 
     law: a law or whole body; blend: for the laws that take one; frame: in which the pages command; workspace: where
-    the arm works alone; speed_scale: the fraction of the limits that full stick asks for.
+    the arm works alone; speed_scale: the fraction of the limits that full stick asks for; hand: the one that is driven,
+    of a robot that has several.
     """
 
     workspace: Workspace
@@ -65,6 +66,7 @@ class Settings(Record, frozen=True):
     blend: Choice = Choice("smoothstep")
     frame: Frame = Frame.WORLD
     speed_scale: float = 1.0
+    hand: str = ""
 
 
 class Plug(Record, frozen=True):
@@ -118,9 +120,9 @@ class Welcome(Record, frozen=True, tag="welcome"):
     """The robot side's answer to a hello: what it is.
 
     name: in the network; model: which robot; rate [Hz]; limits: of the command, where a stick is at its end; reach: of
-    the arm [m]; obeys: the parts of a twist, and "gripper", that it follows; axes: by frame, what a two-axis stick,
-    forward and leftward, commands; stop_time [s]: the longest time from a lost signal to standstill; laws, blends: what
-    can be chosen, by name.
+    the arm [m]; obeys: the parts of a twist, and "gripper", that it follows; hands: of a robot that has several, those;
+    axes: by frame, what a two-axis stick, forward and leftward, commands; stop_time [s]: the longest time from a lost
+    signal to standstill; laws, blends: what can be chosen, by name.
     """
 
     protocol: int
@@ -131,6 +133,7 @@ class Welcome(Record, frozen=True, tag="welcome"):
     limits: Limits
     reach: tuple[float, float]
     obeys: tuple[str, ...]
+    hands: tuple[str, ...]
     axes: dict[str, tuple[str, str]]
     stop_time: float
     max_delay: float

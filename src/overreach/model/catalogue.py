@@ -17,12 +17,15 @@ from overreach.model.cache import keep, kept
 from overreach.model.described import DescribedRobot
 from overreach.model.description import CommandTable, Description, Measured, check_mode, read_description
 from overreach.model.guessed import guessed, homed
+from overreach.model.handed import HandedRobot, hands_of
 from overreach.model.measure.measure import SHARE_UP, TURN, Result, expected_speed, fastest, manner_for, measure
 from overreach.model.measure.rank import WORDS
 from overreach.model.model import Model
 from overreach.model.mujoco.robot import Parts, parts_of
 from overreach.model.workspace import Workspace
 
+HAND = "@"
+"""Between a robot and the hand that is driven, of one that has several, where both are one text."""
 IN_MODE = "#"
 """Between a robot and the mode in which its hand is held, where both are one text."""
 RAMP = 4.0
@@ -43,14 +46,21 @@ def described() -> dict[str, str]:
 
 def is_file(which: str) -> bool:
     """Say whether a robot is named by a file: a TOML or a model."""
-    return which.endswith((".toml", *MODEL_FILES))
+    return handless(which)[0].endswith((".toml", *MODEL_FILES))
+
+
+def handless(which: str) -> tuple[str, str]:
+    """Return a robot's name or file without the hand that is named behind it, and that hand, if any."""
+    name, mark, hand = which.rpartition(HAND)
+    return (name, hand) if mark and hand.isidentifier() else (which, "")
 
 
 def description_of(which: str) -> tuple[Description, Path]:
     """Return the description called `which`, or in the TOML file `which`, and the folder where its paths begin.
 
-    Raises SetupError in one line.
+    "@HAND" at its end says which of its hands is driven. Raises SetupError in one line.
     """
+    which, hand = handless(which)
     if not is_file(which):
         texts = described()
         if which not in texts and entry_points(group=PLANAR, name=which):
@@ -60,12 +70,14 @@ def description_of(which: str) -> tuple[Description, Path]:
             )
         if which not in texts:
             raise UnknownNameError("robot", which, texts)
-        return read_description(texts[which], f"robot {which!r}"), Path()
+        return read_description(texts[which], f"robot {which!r}", hand), Path()
     path = Path(which)
     if path.suffix != ".toml":
+        if hand:
+            raise SetupError(f"the model file {which!r} is guessed to have one hand: name those of it in a description")
         return guessed(path, _say), path.parent
     try:
-        return read_description(path.read_text("utf-8"), f"robot description {which!r}"), path.parent
+        return read_description(path.read_text("utf-8"), f"robot description {which!r}", hand), path.parent
     except (OSError, UnicodeDecodeError) as error:
         raise SetupError(f"cannot read the robot description {which!r}: {error}") from None
 
@@ -150,11 +162,31 @@ def robot_of(parts: Parts, mode: str, found: Measured) -> DescribedRobot:
 def load(which: str) -> Model:
     """Return the robot called `which`, or in the file `which`; "#MODE" at its end says how its hand is held.
 
+    One of several hands is its first with the others beside it, to be driven in turn, or with "@HAND" that one alone.
     Raises SetupError in one line. Where its workspace is not known it is measured, which takes seconds.
     """
-    name, _ = parted(which)
+    name, asked = parted(which)
+    description, _ = description_of(name)
+    if description.hands and not handless(name)[1]:
+        tail = f"{IN_MODE}{asked}" if asked else ""
+        by_hand = {hand: load(f"{name}{HAND}{hand}{tail}") for hand in description.hands}
+        singles = {hand: one for hand, one in by_hand.items() if isinstance(one, DescribedRobot)}
+        return HandedRobot(singles, description.driven, description.name)
     parts = parts_for(which)
     mode = parts.description.mode
     for warning in parts.warnings:
         _say(f"{name}: {warning}")
     return robot_of(parts, mode, workspace_of(parts, mode, _say))
+
+
+def load_one(which: str) -> DescribedRobot:
+    """Return the robot in space with one hand that is called `which`, or in the file `which`, as `load` does.
+
+    Raises SetupError, too, for one that moves in the plane, and for one with several hands of which none is chosen.
+    """
+    model = load(which)
+    if hands := hands_of(model):
+        raise SetupError(f"{which!r} has several hands, {', '.join(hands)}: choose one with --hand")
+    if not isinstance(model, DescribedRobot):
+        raise SetupError(f"{which!r} is not a robot in space")
+    return model

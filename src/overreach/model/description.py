@@ -15,6 +15,8 @@ mode              how the hand is held if nothing else is asked for; "follow" by
                   an arm that moves its hand along one line only: by default where that begins, and where it points
 [command]         v, w, v_z, dv, dw, dv_z: full deflection of the stick, and its ramps
 home              the joints where the posture rests; [homes]: other ones, for a mode each
+[hands.NAME]      instead of [arm], [hand], [mount], [command], home, [homes], [workspace.MODE], one such set for each
+                  of several hands: [hands.left.arm] and so on. One is driven; the others' joints stay at their homes
 [workspace.MODE]  what `overreach workspace` measured, for "follow", "fixed", "level" or "free"
 """
 
@@ -116,7 +118,7 @@ class Measured(Record, frozen=True):
 
 
 class Description(Record, frozen=True):
-    """A robot, as its TOML says; see the module."""
+    """A robot, as its TOML says; see the module. hands, driven: of one with several, their names, and which it is."""
 
     name: str
     model: str
@@ -131,6 +133,8 @@ class Description(Record, frozen=True):
     locked: dict[str, float] = {}
     homes: dict[str, tuple[float, ...]] = {}
     workspace: dict[str, Measured] = {}
+    hands: tuple[str, ...] = ()
+    driven: str = ""
 
     def __post_init__(self) -> None:
         joints = len(self.arm.joints)
@@ -152,16 +156,58 @@ class Description(Record, frozen=True):
         return msgspec.structs.replace(self, home=self.homes.get(mode, self.home), homes={}, mode=mode)
 
 
+def _of_hand(tables: dict[str, Any], hands: Any, hand: str, what: str) -> dict[str, Any]:
+    """Return the tables of a robot of which one hand is driven, the other hands' joints locked at their homes."""
+    own = {"arm", "hand", "mount", "command", "home", "homes", "workspace", "mode"}
+    if not (isinstance(hands, dict) and hands and all(isinstance(one, dict) for one in hands.values())):
+        raise SetupError(f"{what}: hands must be tables, such as [hands.left.arm]")
+    if both := sorted(own & set(tables)):
+        raise SetupError(
+            f"{what}: {', '.join(both)} belongs under each of its hands ({', '.join(hands)}), not beside them"
+        )
+    for name, one in hands.items():
+        if not name.isidentifier():
+            raise SetupError(f"{what}: a hand's name must be a word, got {name!r}")
+        if other := sorted(set(one) - own):
+            raise SetupError(f"{what}: hands.{name}: unknown key {other[0]!r}; a hand has {', '.join(sorted(own))}")
+    if hand and hand not in hands:
+        raise UnknownNameError("hand", hand, hands)
+    driven = hand or next(iter(hands))
+    mine = {joint for group in _groups(hands[driven]) for joint in group}
+    locked = dict(tables.get("locked", {}))
+    for name, one in hands.items():
+        groups, home = _groups(one), one.get("home", [])
+        if len(groups) != len(home):
+            raise SetupError(f"{what}: hands.{name}: home must be a number for each of its {len(groups)} joints")
+        for group, at in zip(groups, home, strict=True):
+            locked.update({joint: at / len(group) for joint in group if joint not in mine and joint not in locked})
+    return {**tables, **hands[driven], "locked": locked, "hands": list(hands), "driven": driven}
+
+
+def _groups(hand: dict[str, Any]) -> list[list[str]]:
+    arm = hand.get("arm")
+    joints = arm.get("joints", []) if isinstance(arm, dict) else []
+    return [one if isinstance(one, list) else [one] for one in joints]
+
+
 def check_mode(mode: str) -> None:
     """Raise UnknownNameError, with the valid ones, unless there is such a mode."""
     if mode not in MODES:
         raise UnknownNameError("orientation mode", mode, MODES)
 
 
-def read_description(text: str, what: str = "robot description") -> Description:
-    """Return the description in TOML `text`; raises SetupError that says what is wrong, and where."""
+def read_description(text: str, what: str = "robot description", hand: str = "") -> Description:
+    """Return the description in TOML `text`; raises SetupError that says what is wrong, and where.
+
+    hand: of a robot that has several, the one that is to be driven, by default the first.
+    """
     try:
         tables: dict[str, Any] = tomllib.loads(text)
+        hands = tables.pop("hands", None)
+        if hands is not None:
+            tables = _of_hand(tables, hands, hand, what)
+        elif hand:
+            raise SetupError(f"{what} has one hand: there is no {hand!r}")
         return msgspec.convert(tables, Description)
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
         raise SetupError(f"{what}: {error}") from None

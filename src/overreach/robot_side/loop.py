@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Callable
 from concurrent.futures import Future
 from math import inf
-from typing import NamedTuple, final
+from typing import NamedTuple, cast, final
 
 import msgspec
 
@@ -34,7 +34,7 @@ from overreach.requests import ArmRequest, Request, RestartRequest
 from overreach.robot_side.report import Reporter
 from overreach.robot_side.settings import Builder, Built, build, usual
 from overreach.robot_side.welcome import Reception
-from overreach.robots.base import Robot, sentence
+from overreach.robots.base import Handed, Robot, sentence
 from overreach.types import Command, RobotState
 
 STATE_PERIOD_S = 1.0 / 60.0
@@ -234,6 +234,8 @@ class Loop:
             return
         if settings.frame is not self.settings.frame and not resting:
             raise SetupError("Let go first: what the stick means does not change in motion.")
+        if settings.hand != self.settings.hand and not resting:
+            raise SetupError("Let go first: another hand is driven only from rest.")
         law = settings.law.name
         slow = (
             law in self._reception.laws and law_plug(law).slow_to_load and _libraries(settings.law) not in self._loaded
@@ -250,6 +252,8 @@ class Loop:
         try:
             built = building.future.result()
             self.pilot.configure(built.law, built.model, built.settings.speed_scale, built.planner)
+            if built.settings.hand != self.settings.hand:
+                cast(Handed, self._robot).choose(built.settings.hand)
         except OverreachError as error:
             building.answer(Refused(str(error)))
         except BaseException as error:  # a plug-in law may raise anything when it is imported or made

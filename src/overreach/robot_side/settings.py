@@ -12,10 +12,12 @@ from typing import final
 
 import msgspec
 
+from overreach.errors import SetupError
 from overreach.law.blend import Blend, Step
 from overreach.law.body import Planner, WholeBody, check_fits
 from overreach.law.laws import usual_blend
 from overreach.link.messages import Choice, Plug, Scene, Settings, encode
+from overreach.model.handed import HandedRobot, hand_of
 from overreach.model.model import Model, check_workspace
 from overreach.model.outline import bands, wheels, workspace
 from overreach.parameters import Parameters, schema, summary
@@ -41,7 +43,8 @@ def usual(model: Model, law: Choice) -> Settings:
     Pages command in their picture's frame, the world's, unless the law has one of its own.
     """
     own = law_plug(law.name).frame
-    settings = Settings(model.workspace, law, frame=Frame.WORLD if own is Frame.HAND else own)
+    frame = Frame.WORLD if own is Frame.HAND else own
+    settings = Settings(model.workspace, law, frame=frame, hand=hand_of(model))
     if not model.workspace.edges:
         return settings
     blend = usual_blend(load_blend(settings.blend.name, settings.blend.parameters), model)
@@ -54,6 +57,12 @@ def build(settings: Settings, model: Model) -> Built:
 
     The speed is left to the gate, which checks it when they come into force.
     """
+    if isinstance(model, HandedRobot) and settings.hand != model.hand:
+        model = model.with_hand(settings.hand)
+        own = usual(model, settings.law)  # the other hand's workspace is its own, and the bands in it
+        settings = msgspec.structs.replace(settings, workspace=own.workspace, blend=own.blend)
+    elif settings.hand != hand_of(model):
+        raise SetupError(f"{model.name} has one hand: there is no {settings.hand!r}")
     placed_model = model.placed(model.mount, settings.workspace)
     check_workspace(placed_model, settings.workspace)
     blend = load_blend(settings.blend.name, settings.blend.parameters)

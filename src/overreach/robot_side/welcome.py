@@ -12,7 +12,8 @@ from overreach.control.pilot import Pilot, obeys
 from overreach.gate.gate import STALE_S
 from overreach.law.frame import axes, frames_of
 from overreach.link.messages import PROTOCOL, Settings, Welcome, encode
-from overreach.robot_side.settings import Built, blends_to_choose, laws_to_choose
+from overreach.model.handed import hands_of
+from overreach.robot_side.settings import Built, blends_to_choose, laws_to_choose, usual
 
 REVISION_BITS = 48
 """Revisions fit into a JavaScript number."""
@@ -32,6 +33,8 @@ class Reception:
     def take(self, built: Built) -> None:
         """Make the welcome anew, for settings that have come into force."""
         self.revision += 1
+        if built.settings.hand != self._defaults.hand:  # it has just been chosen: its workspace is whole
+            self._defaults = usual(built.model, self._defaults.law)
         model = built.model
         welcome = Welcome(
             protocol=PROTOCOL,
@@ -42,6 +45,7 @@ class Reception:
             limits=self._pilot.gate.limits,
             reach=model.arm.reach,
             obeys=tuple(sorted(obeys(model))),
+            hands=hands_of(model),
             axes={frame.value: axes(frame) for frame in frames_of(model.arm)},
             stop_time=STALE_S + 1.0 / self._rate + self._pilot.controller.guard.stop_s,
             max_delay=self._pilot.gate.max_delay,

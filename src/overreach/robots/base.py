@@ -56,3 +56,11 @@ class Robot(Protocol):
     def restart(self, now: float) -> None:
         """Go back to the start, at rest. Called only for a simulated robot."""
         ...
+
+
+class Handed(Protocol):
+    """What a robot with several hands has beside that."""
+
+    def choose(self, hand: str) -> None:
+        """Take the gripper that is written and reported for that of `hand`; the others stay as they are."""
+        ...

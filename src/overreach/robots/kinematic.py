@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import final
 
+from overreach.model.handed import hand_of
 from overreach.model.model import Model, channels, check_reach
 from overreach.plugs import USUAL_MODEL, load_model
 from overreach.robots.arc import arc
@@ -36,6 +37,7 @@ class KinematicRobot:
         self._l = self.model.start.l if l is None else l
         self._psi = self.model.start.psi if psi is None else psi
         check_reach(self.model, self._l)
+        self._hand = hand_of(self.model)
         self.restart(now)
 
     def restart(self, now: float) -> None:
@@ -45,7 +47,7 @@ class KinematicRobot:
         self._theta = self.model.arm.posture(self._l, self._psi)
         self._actuators = Actuators(len(channels(self.model)), self._imperfection, self.model.base.axes)
         self._now = now
-        self._gripper = 0.0
+        self._grippers: dict[str, float] = {}
         self._sensors = Sensors(self._imperfection, now, self.model.base.omni)
         self._sensors.see(self.true)
 
@@ -55,7 +57,9 @@ class KinematicRobot:
         rates, base = self._actuators.happening, self.model.base
         twist, dq = base.twist(rates), rates[base.axes :]
         motion = Twist(twist.v_x, twist.v_y, w_z=twist.w_z)
-        return RobotState(self._now, Pose.flat(*self._pose), motion, self._theta, dq, self._gripper)
+        return RobotState(
+            self._now, Pose.flat(*self._pose), motion, self._theta, dq, self._grippers.get(self._hand, 0.0)
+        )
 
     def read(self, now: float) -> RobotState:
         """Return the measured state at `now` [s]."""
@@ -69,7 +73,11 @@ class KinematicRobot:
         self._move_to(now)
         self._actuators.ask((*self.model.base.rates(base), *joints), now)
         if gripper is not None:
-            self._gripper = max(0.0, min(1.0, gripper))
+            self._grippers[self._hand] = max(0.0, min(1.0, gripper))
+
+    def choose(self, hand: str) -> None:
+        """Take the gripper that is written and reported for that of `hand`."""
+        self._hand = hand
 
     def arm(self, now: float) -> None:
         """Need nothing to get ready."""

@@ -74,6 +74,7 @@ link.soon = () => stick.held; // the next command acknowledges the picture, and 
 stick.lost.push((why) => panel.tell(why === stick.barred ? "View only" : "Let go", why));
 
 function configure(settings, scene) {
+  if (page.settings && page.settings.hand !== settings.hand) view.clear(); // the path of another hand
   page.settings = settings;
   plots.configure(settings.workspace);
   if (settings.frame !== stick.frame) stick.release(stick.holder, "What the stick means has changed: press again.");

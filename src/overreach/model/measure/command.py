@@ -44,10 +44,11 @@ def run_workspace(robot: str, mode: str, find_home: bool, out: Path | None, figu
     print(f"full deflection by the rule: v = {result.fastest:.3f} m/s\n")
     if find_home:
         print(f"home = {list(parts.description.home)}\n")
-    print(table(found, mode), end="")
+    where = f"hands.{description.driven}.workspace" if description.hands else "workspace"
+    print(table(found, mode, where), end="")
     if out is not None:
         before = out.read_text("utf-8") if out.exists() else ""
-        write_text(out, with_table(before, found, mode))
+        write_text(out, with_table(before, found, mode, where))
     if figure is not None:
         draw(result, parts.mount, description.base.footprint, f"{description.name}, {mode}: {result.does}", figure)
 

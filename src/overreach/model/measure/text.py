@@ -17,9 +17,9 @@ INSIDE, REACHED, MISSED = "#", "+", "."
 """A column of cells: wholly in the sector, reached somewhere, never."""
 
 
-def table(measured: Measured, mode: str) -> str:
-    """Return the table [workspace.MODE]."""
-    lines = [f"[workspace.{mode}]"]
+def table(measured: Measured, mode: str, where: str = "workspace") -> str:
+    """Return the table [workspace.MODE], or of one of several hands [hands.NAME.workspace.MODE]: `where` it is."""
+    lines = [f"[{where}.{mode}]"]
     for name in ("l", "psi", "z"):
         low, high = getattr(measured, name)
         unit = "rad" if name == "psi" else "m"
@@ -33,22 +33,23 @@ def table(measured: Measured, mode: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_table(text: str, measured: Measured, mode: str) -> str:
-    """Return the TOML `text` of a description with this table in it, in place of the one it had.
+def with_table(text: str, measured: Measured, mode: str, where: str = "workspace") -> str:
+    """Return the TOML `text` of a description with this table in it, in place of the one it had. where: as in `table`.
 
     Raises SetupError for a text in which the table cannot be put.
     """
     kept: list[str] = []
     own: list[str] | None = None
     place = None
+    header = r"\s*\.\s*".join(rf"[\"']?{part}[\"']?" for part in (*where.split("."), mode))
     for line in text.splitlines():
         if line.lstrip().startswith("["):
             kept += _behind(own or [])
-            own = [] if re.match(rf"\s*\[\s*workspace\s*\.\s*[\"']?{mode}[\"']?\s*\]", line) else None
+            own = [] if re.match(rf"\s*\[\s*{header}\s*\]", line) else None
             place = len(kept) if own is not None else place
         (kept if own is None else own).append(line)
     kept += _behind(own or [])
-    made = table(measured, mode).splitlines()
+    made = table(measured, mode, where).splitlines()
     if place is None:
         place = len("\n".join(kept).rstrip().splitlines())
         kept = [*kept[:place], *([""] if place else [])]
@@ -59,7 +60,7 @@ def with_table(text: str, measured: Measured, mode: str) -> str:
     try:
         tomllib.loads(whole)
     except tomllib.TOMLDecodeError as error:
-        raise SetupError(f"[workspace.{mode}] cannot be put into this description: {error}") from None
+        raise SetupError(f"[{where}.{mode}] cannot be put into this description: {error}") from None
     return whole
 
 
