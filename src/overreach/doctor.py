@@ -24,6 +24,7 @@ OPTIONAL = {
     "qp": ("qpsolvers", "the laws qp and holistic, reproduce, bench"),
     "fast": ("numba", "compiled steps, bench"),
     "models": ("mujoco-menagerie", "the robot tiago"),
+    "stretch": ("hello-robot-stretch-urdf", "the robot stretch"),
     "peers": ("mink", "bench --robot"),
 }
 """Extras: the package that tells whether it is there, and what it is for."""
@@ -32,7 +33,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "firefox", "xdg-ope
 
 def _line(good: bool, what: str, found: str, remedy: str = "") -> str:
     mark = "ok     " if good else "missing"
-    return f"  {mark}  {what:<22}{found}" + (f"  ->  {remedy}" if not good and remedy else "")
+    return f"  {mark}  {what:<26}{found}" + (f"  ->  {remedy}" if not good and remedy else "")
 
 
 def _package(name: str, job: str) -> str:
