@@ -47,7 +47,7 @@ def _extra(extra: str, package: str, job: str) -> str:
     try:
         return _line(True, package, f"{version(package)}  ({job})")
     except PackageNotFoundError:
-        return f"  not in   {package:<22}({job})  ->  {pip_line(extra)}"
+        return f"  not in   {package:<26}({job})  ->  {pip_line(extra)}"
 
 
 def _one_mujoco() -> list[str]:
