@@ -138,6 +138,35 @@ def test_steering_ends_at_mid_reach() -> None:
         assert abs(a) < 1e-3
 
 
+@given(st.floats(-0.05, 0.05), across, st.booleans(), st.floats(0.0, 0.5 * math.pi), st.booleans())
+def test_the_swing_itself_never_draws_the_hand_out(
+    s_x: float, yaw: float, inward: bool, angle: float, other: bool
+) -> None:
+    """A hand that waits while the base swings by what is left does not pass the arm's end, in either sense."""
+    mount = Mount(s_x, 0.0, yaw).three
+    out, turn = (-1.0 if inward else 1.0), (-1.0 if other else 1.0)
+    l, a, v = (ENDS[0] + 0.15 if inward else ENDS[1] - 0.15), angle, 0.3
+    for _ in range(20_000):
+        u_r, u_t = out * v * math.sin(a), turn * v * math.cos(a)
+        *_, w_b, v_m, _, _ = side(l, 0.0, u_r, u_t, rise_smoothstep, ENDS, mount, MOST, turn, tops=(0.3, 0.2))
+        l += 2e-3 * v_m
+        a += 2e-3 * out * turn * w_b
+        assert ENDS[0] - 1e-3 <= l <= ENDS[1] + 1e-3
+        if a <= 0.0 or (abs(w_b) < 1e-3 and a < 1e-2):
+            break
+
+
+def test_straight_out_swings_the_way_that_draws_the_arm_in() -> None:
+    """Where the way says nothing, the sense is the one in which the arm's end does not go out for the swing."""
+    for s_x in (-0.02, 0.02):
+        for yaw in (-0.5 * math.pi, 0.5 * math.pi):
+            for l, u_r in ((ENDS[1] - 0.5 * Q, 0.2), (ENDS[0] + 0.5 * Q, -0.2)):
+                mount = Mount(s_x, 0.0, yaw).three
+                *_, w_b, v_m, _, s = side(l, 0.0, u_r, 0.0, rise_smoothstep, ENDS, mount, MOST)
+                assert w_b != 0.0
+                assert (v_m - s * u_r) * u_r <= 0.0
+
+
 def test_side_conforms() -> None:
     """It keeps what every law promises, on an arm to the left, to the right, and beside its axle."""
     for mount in (Mount(0.0, 0.0, 0.5 * math.pi), Mount(0.0, 0.0, -0.5 * math.pi), Mount(-0.02, 0.05, -1.5)):

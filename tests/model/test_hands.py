@@ -16,7 +16,7 @@ from overreach.control.pilot import Pilot, replay
 from overreach.control.tick import Tick
 from overreach.errors import SetupError
 from overreach.law.usual import usual_law
-from overreach.link.messages import Accepted, ConfigureRequest, Refused
+from overreach.link.messages import Accepted, Choice, ConfigureRequest, Refused
 from overreach.model import catalogue
 from overreach.model.catalogue import description_of, load, load_one, parts_for
 from overreach.model.described import DescribedRobot
@@ -24,6 +24,8 @@ from overreach.model.description import read_description
 from overreach.model.handed import HandedRobot
 from overreach.model.measure.command import run_workspace
 from overreach.requests import ArmRequest
+from overreach.robot_side.loop import Loop
+from overreach.robot_side.settings import build, usual
 from overreach.robots.kinematic import KinematicRobot
 from overreach.types import Command, Frame, Twist
 from tests.pair import BASE, hand_table, written
@@ -59,12 +61,12 @@ class Drive:
     def __init__(self, model: HandedRobot) -> None:
         self.pilot, self.robot = Pilot(model), KinematicRobot(model)
         self.pilot.ask(ArmRequest(ME), 0.0)
-        self.now, self.seq, self.ticks = 0.0, 0, list[Tick]()
+        self.now, self.seq, self.press, self.ticks = 0.0, 0, 1, list[Tick]()
 
     def push(self, seconds: float, twist: Twist, gripper: float | None = None) -> None:
         for _ in range(round(seconds / DT)):
             self.seq += 1
-            said = Command(ME, self.seq, 1, True, twist, Frame.WORLD, gripper, seen=self.now)
+            said = Command(ME, self.seq, self.press, True, twist, Frame.WORLD, gripper, seen=self.now)
             tick = self.pilot.tick(self.robot.read(self.now), said, self.now, DT)
             self.robot.write(tick.base, tick.joints, tick.gripper, self.now, self.now + DT)
             self.ticks.append(tick)
@@ -145,6 +147,7 @@ def test_another_is_chosen_at_rest_alone(pair: str) -> None:
     drive.push(1.0, Twist())
     before = drive.q
     drive.drive("right")
+    drive.press += 1
     drive.push(1.5, Twist(0.2, 0.05))
     assert (drive.q[:ENDS] == before[:ENDS]).all()
     assert np.abs(drive.q[ENDS:] - before[ENDS:]).max() > 0.05
@@ -159,6 +162,7 @@ def test_the_hand_goes_where_it_is_sent_after_a_change(pair: str) -> None:
     drive.push(0.6, Twist(0.1))
     drive.push(0.6, Twist())
     drive.drive("right")
+    drive.press += 1
     single = load_one(f"{pair}@right")
     drive.push(0.5, Twist(0.1))
     places = []
@@ -178,9 +182,98 @@ def test_each_has_its_own_gripper(pair: str) -> None:
     drive.push(0.2, Twist(), gripper=0.7)
     drive.drive("right")
     assert drive.robot.true.gripper == 0.0
+    drive.press += 1
     drive.push(0.2, Twist(), gripper=0.2)
     drive.drive("left")
     assert drive.robot.true.gripper == 0.7
+
+
+def test_a_gripper_that_is_held_does_not_go_over(pair: str) -> None:
+    """A command that still stands says nothing of another hand's gripper: it needs a press of its own."""
+    drive = Drive(handed(pair))
+    drive.push(0.2, Twist(), gripper=0.7)
+    drive.drive("right")
+    for _ in range(3):
+        tick = drive.pilot.tick(drive.robot.read(drive.now), None, drive.now, DT)
+        drive.robot.write(tick.base, tick.joints, tick.gripper, drive.now, drive.now + DT)
+        drive.now += DT
+    assert drive.robot.true.gripper == 0.0
+    drive.push(0.2, Twist(0.1))  # of the same press
+    assert not any(drive.ticks[-1].joints)
+
+
+def test_a_hand_keeps_the_attitude_that_it_was_turned_to(pair: str) -> None:
+    """Pitched, left for the other, driven again: it does not turn back."""
+    drive = Drive(handed(pair))
+    drive.push(0.8, Twist(w_y=0.3))
+    drive.push(0.8, Twist())
+    single = load_one(f"{pair}@left")
+    turned = single.arm.at(drive.robot.true.q[:ENDS], single.mount).attitude
+    for hand in ("right", "left"):
+        drive.drive(hand)
+        drive.press += 1
+        drive.push(0.3, Twist(0.05))
+        drive.push(0.5, Twist())
+    again = single.arm.at(drive.robot.true.q[:ENDS], single.mount).attitude
+    assert np.arccos(0.5 * (np.trace(turned @ again.T) - 1.0)) < 0.1  # its bearing has changed a little
+    assert abs(turned[2, 0] - again[2, 0]) < 0.01
+
+
+def test_a_workspace_made_smaller_is_the_hands_own(pair: str) -> None:
+    """It stays in force while that hand is driven, is whole again after a change, and is never the other's."""
+    model = handed(pair)
+    whole = model.with_hand("right").workspace
+    start = usual(model, Choice("exact"))
+    right = build(replace(start, hand="right"), model, "left")
+    assert right.model.workspace == whole
+    small = replace(whole, l_max=whole.l_max - 0.05)
+    narrowed = build(replace(right.settings, workspace=small), model, "right")
+    assert narrowed.model.workspace == narrowed.settings.workspace == small
+    back = build(replace(narrowed.settings, hand="left"), model, "right")
+    assert back.model.workspace == model.workspace
+    with pytest.raises(SetupError, match="mobile4 has one hand"):
+        build(replace(usual(load("mobile4"), Choice("exact")), hand="right"), load("mobile4"))
+
+
+def test_what_carries_both_is_a_joint_of_both(tmp_path: Path) -> None:
+    """A lift in one hand's joints alone would move the other hand unseen; with other speeds it would be two joints."""
+    path = Path(written(tmp_path))
+    text = path.read_text()
+    lift = text.replace("[locked]\nlift = 0.1\n", "")
+    for hand, speed in (("left", "0.2"), ("right", "0.1")):
+        lift = lift.replace(f'joints = ["{hand}_pan"', f'joints = ["lift", "{hand}_pan"')
+        begin = lift.index(f"[hands.{hand}.arm]")
+        own = lift[begin:].replace("speed = [", f"speed = [{speed}, ", 1).replace("tion = [", "tion = [2.0, ", 1)
+        lift = lift[:begin] + own
+    lift = lift.replace("home = [", "home = [0.1, ")
+    left_alone = lift.replace('joints = ["lift", "right_pan"', 'joints = ["right_pan"').replace("[0.1, 3.0", "[3.0")
+    path.write_text(
+        left_alone.replace(
+            "[2.0, 15.0, 15.0, 15.0, 20.0, 20.0, 20.0]\n\n[hands.right.hand",
+            "[15.0, 15.0, 15.0, 20.0, 20.0, 20.0]\n\n[hands.right.hand",
+        )
+    )
+    description = path.read_text()
+    at = description.index("[hands.right]")
+    path.write_text(description[:at] + description[at:].replace("home = [0.1, ", "home = ["))
+    with pytest.raises(SetupError, match=r"hands\.right: joint 'lift' carries this hand too"):
+        parts_for(f"{path}@right")
+    path.write_text(lift)
+    with pytest.raises(SetupError, match="the joint 'lift' of pair is another's too, with other speeds"):
+        load(str(path))
+
+
+def test_a_driver_without_choose_is_refused_at_the_start(pair: str) -> None:
+    """And one that fails at it leaves the hand that was driven, and says so."""
+
+    class Plain:
+        simulated = True
+
+        def __init__(self, model: HandedRobot) -> None:
+            self.model = model
+
+    with pytest.raises(SetupError, match="its driver has no `choose`"):
+        Loop(Plain(handed(pair)), None, None, 200.0)  # type: ignore[arg-type]  # it does not come that far
 
 
 def test_a_change_of_hand_replays(pair: str) -> None:
@@ -189,6 +282,7 @@ def test_a_change_of_hand_replays(pair: str) -> None:
     drive.push(0.5, Twist(0.1))
     drive.push(0.6, Twist())
     drive.drive("right")
+    drive.press += 1
     drive.push(0.5, Twist(0.1))
     pilot = Pilot(handed(pair))
     assert list(replay(pilot, drive.ticks)) == drive.ticks

@@ -19,7 +19,7 @@ from overreach.model.catalogue import load, load_one, parts_for
 from overreach.model.described import DescribedRobot
 from overreach.model.mujoco.contact import Contacts
 from overreach.model.workspace import Workspace
-from overreach.types import Frame, Record
+from overreach.types import Record
 
 REACH_M = 0.1
 """The reach inside the workspace that should not move the base."""
@@ -138,6 +138,12 @@ def check(
     )  # fmt: skip
 
 
+def way_out(model: DescribedRobot) -> Array:
+    """Return v, w, v_z, v_y (4,) that move the hand outward from where it starts, at 1 m/s, in its own frame."""
+    facing = model.arm.at(model.arm.posture(model.start.l, model.start.psi), model.mount).facing
+    return np.array((np.cos(facing), 0.0, 0.0, -np.sin(facing)))
+
+
 def reach_base_path(model: DescribedRobot) -> tuple[float, float]:
     """Return (length, path) [m]: how far the base goes for a reach along l inside the workspace, out and back.
 
@@ -151,10 +157,11 @@ def reach_base_path(model: DescribedRobot) -> tuple[float, float]:
     ramp = v / most.dv_c
     there = round((0.5 * length / v + ramp) / DT_S)
     back = round((length / v + ramp) / DT_S)
-    commands = np.zeros((2 * there + back + 100, 3))
-    commands[: there - round(ramp / DT_S), 0] = v
-    commands[there : there + back - round(ramp / DT_S), 0] = -v
-    driven = drive(model, commands, frame=Frame.POLAR)
+    commands = np.zeros((2 * there + back + 100, 4))
+    outward = way_out(model) * v
+    commands[: there - round(ramp / DT_S)] = outward
+    commands[there : there + back - round(ramp / DT_S)] = -outward
+    driven = drive(model, commands)
     return length, float(np.hypot(*np.diff(driven.base[:, :2], axis=0).T).sum())
 
 

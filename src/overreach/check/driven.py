@@ -45,10 +45,8 @@ def commanded(model: DescribedRobot, commands: Array) -> list[Tick]:
     return [tick for tick, _ in ticks(model, commands)]
 
 
-def ticks(
-    model: DescribedRobot, commands: Array, psi: float | None = None, frame: Frame = Frame.HAND
-) -> Iterator[tuple[Tick, KinematicRobot]]:
-    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in a frame, the hand's by default, from its start.
+def ticks(model: DescribedRobot, commands: Array, psi: float | None = None) -> Iterator[tuple[Tick, KinematicRobot]]:
+    """Drive `model` by commands (N, 3 or 4) of v, w, v_z, v_y in the frame of the hand, from its start.
 
     psi: the bearing [rad] at which it starts.
     """
@@ -57,13 +55,13 @@ def ticks(
     for k, (v, w, v_z, *aside) in enumerate(commands.tolist()):
         t = k * DT_S
         twist = Twist(v, aside[0] if aside else 0.0, v_z, w_z=w)
-        command = Command(OPERATOR, k + 1, 1, True, twist, frame, seen=t)
+        command = Command(OPERATOR, k + 1, 1, True, twist, Frame.HAND, seen=t)
         tick = pilot.tick(robot.read(t), command, t, DT_S)
         robot.write(tick.base, tick.joints, tick.gripper, t, t + DT_S)
         yield tick, robot
 
 
-def drive(model: DescribedRobot, commands: Array, psi: float | None = None, frame: Frame = Frame.HAND) -> Driven:
+def drive(model: DescribedRobot, commands: Array, psi: float | None = None) -> Driven:
     """Drive `model` as `ticks` does, and return what happened."""
     many, n = len(commands), len(model.arm.channels)
     found = Driven(
@@ -71,7 +69,7 @@ def drive(model: DescribedRobot, commands: Array, psi: float | None = None, fram
         np.empty(many), np.empty(many), np.empty((many, 3)), np.empty((many, n)), [], [],
     )  # fmt: skip
     robot = KinematicRobot(model)
-    for k, (tick, moved) in enumerate(ticks(model, commands, psi, frame)):
+    for k, (tick, moved) in enumerate(ticks(model, commands, psi)):
         robot = moved
         state = tick.decided.state
         decided = tick.decided

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from overreach.arm.spatial.screws import Array
-from overreach.check.check import check
+from overreach.check.check import check, way_out
 from overreach.check.driven import Driven, drive
 from overreach.check.judge import in_world
 from overreach.check.streams import DT_S
@@ -109,11 +109,7 @@ def straight(model: DescribedRobot) -> tuple[float, float]:
 
 def outward(model: DescribedRobot, steps: int) -> Array:
     """Return commands (steps, 4) of v, w, v_z, v_y that move the hand outward from where it starts, at full speed."""
-    start = model.arm.posture(model.start.l, model.start.psi)
-    facing = model.arm.at(start, model.mount).facing
-    commands = np.zeros((steps, 4))
-    commands[:, 0], commands[:, 3] = model.command.v_c * np.cos(facing), -model.command.v_c * np.sin(facing)
-    return commands
+    return np.tile(model.command.v_c * way_out(model), (steps, 1))
 
 
 def recentred(model: DescribedRobot) -> float:

@@ -54,6 +54,7 @@ class HandController:
         self.guard, self._feedback = Guard(all_of_them, ramp_s), Feedback(all_of_them)
         self._take(model)
         self._theta_e: float | None = None
+        self._attitudes: dict[str, tuple[float, ...] | None] = {}
         self.frame, self._angle = law.frame, FRAMES[law.frame]
         self.configure(law)
         self.restart()
@@ -88,20 +89,24 @@ class HandController:
         if other_hand and any(self.guard.written):
             raise SetupError("Let go first: another hand is driven only from rest.")
         name, closes, plan = str(law.name)[:LONGEST_NAME], bool(law.closes_residual), planner or law.planner(model)
+        centring = law.recentring(model)
         if other_hand:
+            self._attitudes[hand_of(self.model)] = self._governor.attitude
             self._take(model)
+            self._governor.attitude = self._attitudes.get(hand_of(model))
             self._theta_e = None
             self._shares = 0.0, 0.0
             self.chain = self._arm.at(self._believed.q, model.mount)
         self.model = model
         self._governor.model = model
         self.law, self.name, self._closes, self._plan = law, name, closes, plan
-        self._centring, self._carried = law.recentring(model), NOT_CARRIED
+        self._centring, self._carried = centring, NOT_CARRIED
 
     def restart(self) -> None:
         """Forget the past: the robot was put somewhere else, at rest. A fault stays."""
         start = self.model.start
         self._theta_e = None
+        self._attitudes.clear()
         self._governor.restart()
         self._now = 0.0
         self._shares = (0.0, 0.0)

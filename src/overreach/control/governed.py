@@ -66,7 +66,8 @@ class Governor:
         self.model = model
         self._bounds, self._guard = bounds, guard
         self._heading: float | None = None
-        self._attitude: tuple[float, ...] | None = None
+        self.attitude: tuple[float, ...] | None = None
+        """The one that the hand holds at bearing 0, by rows; None: home's."""
         self.w_m = 0.0
         """How fast the arm turns the hand's bearing [rad/s], as it was decided last."""
 
@@ -77,7 +78,7 @@ class Governor:
 
     def restart(self) -> None:
         """Hold the hand as at home: the robot was put to its start."""
-        self._attitude = None
+        self.attitude = None
         self.rest()
 
     def decide(
@@ -97,8 +98,8 @@ class Governor:
             u = msgspec.structs.replace(u, u_z=u_z)
         bearing = state.pose.yaw + polar.psi + model.mount.yaw
         if self._heading is None:
-            self._heading = bearing + chain.heading(self._attitude)
-        held = self._attitude
+            self._heading = bearing + chain.heading(self.attitude)
+        held = self.attitude
         worst = of_tops(at, split)
         fast = min(part, 1.0 if worst <= 1.0 else 1.0 / worst)
         scale = split.scale * fast
@@ -117,7 +118,7 @@ class Governor:
                 attitude=held,
             )
         )
-        self._attitude = step.attitude
+        self.attitude = step.attitude
         scale *= step.scale
         if not in_place:
             self._heading += u.w_z * scale * dt

@@ -8,15 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from overreach.arm.chain import is_aside
 from overreach.control.controller import HandController
 from overreach.control.tick import Configured, Failed, Tick
+from overreach.errors import SetupError
 from overreach.gate.gate import MAX_DELAY_S, PLANE, STILL, Gate, Gated
 from overreach.gate.limits import Limits
 from overreach.law.body import Planner, WholeBody
+from overreach.law.frame import frames_of
 from overreach.law.usual import usual_law
+from overreach.model.handed import hand_of
 from overreach.model.model import Model
 from overreach.requests import ArmRequest, DisarmRequest, Request, ResetRequest, RestartRequest, StopRequest
-from overreach.types import Command, RobotState
+from overreach.types import Command, Frame, RobotState
 from overreach.verdicts import Motion, Verdict
 
 ROW_OF = {"v_z": 2, "w_x": 3, "w_y": 4}
@@ -43,7 +47,8 @@ class Pilot:
         limits: Limits | None = None,
         max_delay: float = MAX_DELAY_S,
     ) -> None:
-        self.gate = Gate(limits or model.command, obeys=obeys(model), max_delay=max_delay)
+        frames = frozenset(frames_of(model.arm) if is_aside(model.arm) else Frame)
+        self.gate = Gate(limits or model.command, obeys=obeys(model), frames=frames, max_delay=max_delay)
         self.controller = self._controller(model, law or usual_law(model))
         self._asked: list[Request | Failed | Configured] = []
 
@@ -98,6 +103,9 @@ class Pilot:
         planner: that of the law for the model, where it has been made before.
         """
         model = model or self.model
+        other_hand = hand_of(model) != hand_of(self.model)
+        if other_hand and not self.resting:
+            raise SetupError("Let go first: another hand is driven only from rest.")
         scale = self.gate.speed_scale if speed_scale is None else speed_scale
         planner = planner or law.planner(model)
         before = self.gate.speed_scale
@@ -107,6 +115,8 @@ class Pilot:
         except BaseException:
             self.gate.set_speed_scale(before)
             raise
+        if other_hand:
+            self.gate.forget()
         self._asked.append(Configured(law, model, scale, planner))
 
     def fail(self, reason: str) -> None:

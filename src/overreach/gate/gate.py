@@ -69,8 +69,9 @@ class Gate:
     """Holds the last accepted message and ramps the command. One `tick` per period.
 
     limits: of the command; speed_scale: fraction of `limits.v_c`, `limits.w_c` that full stick asks for; obeys: the
-    parts of a twist, and "gripper", that the robot has; a command for any other is refused, with the reason;
-    max_delay [s]: how old a command may be. Its age is `now` less the time of the state that it echoes.
+    parts of a twist, and "gripper", that the robot has; frames: those in which it can be commanded; a command for any
+    other is refused, with the reason; max_delay [s]: how old a command may be. Its age is `now` less the time of the
+    state that it echoes.
     """
 
     def __init__(
@@ -78,11 +79,13 @@ class Gate:
         limits: Limits | None = None,
         speed_scale: float = 1.0,
         obeys: frozenset[str] = PLANE,
+        frames: frozenset[Frame] = frozenset(Frame),
         max_delay: float = MAX_DELAY_S,
     ) -> None:
         self.limits = limits or Limits()
         self._lacks = [name for name in Twist.__struct_fields__ if name not in obeys]
         self._grips = "gripper" in obeys
+        self._frames = frames
         self.latch = StopLatch()
         self.speed_scale = speed_scale
         self.max_delay = check_delay(max_delay)
@@ -155,6 +158,12 @@ class Gate:
         self.latch.pause()
         self._twist = STILL
 
+    def forget(self) -> None:
+        """Let only a later press count, with what it says: what the command means has changed."""
+        if self._said is not None:
+            self.latch.spend(self._said.grip)
+            self._said = _with(self._said, gripper=None)
+
     def accept(self, said: Command, now: float) -> Verdict | None:
         """Take a message that arrived at `now` [s]; return why it is refused, or None.
 
@@ -205,9 +214,11 @@ class Gate:
     def _lacking(self, said: Command) -> list[str]:
         """Return what is asked for but the robot lacks."""
         twist = said.twist
-        if twist == self._twist and said.gripper is None:  # as it is going already
+        if twist == self._twist and said.frame is self._frame and said.gripper is None:  # as it is going already
             return []
         asked = [name for name in self._lacks if getattr(twist, name) != 0.0]
+        if said.frame not in self._frames and twist != STILL:
+            asked.append(f"frame {said.frame.value!r}")
         if said.gripper is not None:
             if not self._grips:
                 asked.append("gripper")

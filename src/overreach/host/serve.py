@@ -74,7 +74,7 @@ class Host:
         if ask.rates:
             self._look = ask.now + self._period - self._ahead
         if ask.hand != before.hand:
-            cast(Handed, self._robot).choose(ask.hand)
+            self._unarmed = _failure("given another hand", lambda _: cast(Handed, self._robot).choose(ask.hand), now)
         if ask.arms > before.arms:
             self._unarmed = _failure("armed", self._robot.arm, now)
         if ask.rates:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from math import cos, sin
 
-from overreach.arm.chain import Arm, governs
+from overreach.arm.chain import Arm, governs, is_aside, turns_by_itself
 from overreach.types import Frame, HandTwist, Twist
 
 CommandFrame = Callable[[float, float, float], float]
@@ -96,7 +96,13 @@ def axes(frame: Frame) -> tuple[str, str]:
 
 
 def frames_of(arm: Arm) -> tuple[Frame, ...]:
-    """Return the frames in which the hand of `arm` can be commanded: along its own axes where it has an attitude."""
+    """Return the frames in which the hand of `arm` can be commanded: along its own axes where it has an attitude.
+
+    Where a base has to swing round behind the hand, a way that turns with the base would never be reached: such an arm
+    is commanded along ways that stay in the world.
+    """
+    if is_aside(arm):
+        return (Frame.HAND, Frame.WORLD, *((Frame.TOOL,) if turns_by_itself(arm) else ()))
     return tuple(frame for frame in Frame if frame is not Frame.TOOL or governs(arm))
 
 

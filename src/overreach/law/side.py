@@ -26,6 +26,8 @@ SURE = 1e-3
 STRAIGHT = 0.2
 """The base drives at most 1/STRAIGHT times as fast as it must for an arm that is straight to its side; nearer to an arm
 that points along its way the whole command is scaled."""
+STILL = 0.01
+"""A base that turns slower than this [rad/s] does not swing."""
 SWINGS = 0.6
 """The base swings in this part of a band; in the rest, at its end, the hand waits."""
 ALONG = 0.25
@@ -50,7 +52,7 @@ def side(
     ends: Ends,
     mount: Mount3,
     most: float,
-    sense: float = 1.0,
+    sense: float = 0.0,
     w_c: float = 0.0,
     steer: float = 0.0,
     tops: tuple[float, float] | None = None,
@@ -63,12 +65,15 @@ def side(
         w_b = -sgn(u_t) (mu pi/d u_r + steer |u_t|) + s w_c
         v_b = (k_t w_b - s u_t)/sn                     the hand does not feel the swing
         v_m = s u_r - c v_b - k_r w_b,   w_m = 0
+    A base whose turning centre the arm's line misses, by k_r, moves the arm's end by k_r a as it swings by a, the angle
+    between the two ways: where that is outward, the arm's end counts as so much nearer.
+
     Straight on, any angle between the hand's way and the base's turns to 0 before L, at any speed: the base turns by
     pi/d times the integral of mu over d, a quarter of a turn.
 
-    most: the hand's greatest speed [m/s]; sense: sgn(u_t), where u_t says nothing; w_c: turning [rad/s] that is
-    commanded of the base; steer [rad/m]: turning to re-centre the arm; tops: greatest |v_b| [m/s] and |w_b| [rad/s],
-    to which a swing is cut. Source: this project.
+    most: the hand's greatest speed [m/s]; sense: sgn(u_t), where u_t says nothing, 0 for the one in which the swing
+    draws the arm in; w_c: turning [rad/s] that is commanded of the base; steer [rad/m]: turning to re-centre the arm;
+    tops: greatest |v_b| [m/s] and |w_b| [rad/s], to which a swing is cut. Source: this project.
     """
     l_min, l_max, d, q = ends
     s_x, s_y, yaw = mount
@@ -77,14 +82,19 @@ def side(
     speed = hypot(u_r, u_t)
     if speed == 0.0 and w_c == 0.0:
         return 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0
+    if abs(u_t) > SURE * speed:
+        sense = copysign(1.0, u_t)
+    elif sense == 0.0:
+        sense = -copysign(1.0, k_r)
+    if k_r * sense > 0.0:
+        shorter = abs(k_r) * atan2(abs(u_r), abs(u_t))
+        l_min, l_max = l_min + shorter, l_max - shorter
     if u_r >= 0.0:
         mu, wait = rise(l - l_max + q + 0.5 * d, d), rise(l - l_max + 0.5 * q, q)
     else:
         mu, wait = rise(l_min + q + 0.5 * d - l, d), rise(l_min + 0.5 * q - l, q)
     across, left = abs(u_r) / most, 1.0 - wait
     scale = left / (left + wait * across) if across > 0.0 else 1.0  # continuous where u_r turns round
-    if abs(u_t) > SURE * speed:
-        sense = copysign(1.0, u_t)
     along = scale * u_t
     w_b = scale * w_c - sense * (mu * pi / d * u_r + steer * abs(u_t))
     if tops is not None:
@@ -188,7 +198,7 @@ class Side(Law, frozen=True):
             l, psi, u_r, u_t = chain.l, chain.psi, u.u_r, u.u_t
             if lag > 0.0:
                 l, psi, u_r, u_t = lead(l, psi, u_r, u_t, is_.v_x, is_.w_z, lag, mount)
-            sense = -copysign(1.0, is_.w_z * u_r)
+            sense = -copysign(1.0, is_.w_z * u_r) if abs(is_.w_z) > STILL else 0.0
             steer = carried * centring.steer(l, u_r, u_t) if carried and centring else 0.0
             w_c = u.w_z if with_base else 0.0
             shares = side(l, psi, u_r, u_t, rise, ends, mount, most, sense, w_c, steer, tops)

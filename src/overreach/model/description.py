@@ -118,7 +118,9 @@ class Measured(Record, frozen=True):
 
 
 class Description(Record, frozen=True):
-    """A robot, as its TOML says; see the module. hands, driven: of one with several, their names, and which it is."""
+    """A robot, as its TOML says; see the module. hands, driven, others: of one with several, their
+    names, which it is, and the joints that only the others have.
+    """
 
     name: str
     model: str
@@ -135,6 +137,7 @@ class Description(Record, frozen=True):
     workspace: dict[str, Measured] = {}
     hands: tuple[str, ...] = ()
     driven: str = ""
+    others: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         joints = len(self.arm.joints)
@@ -175,13 +178,15 @@ def _of_hand(tables: dict[str, Any], hands: Any, hand: str, what: str) -> dict[s
     driven = hand or next(iter(hands))
     mine = {joint for group in _groups(hands[driven]) for joint in group}
     locked = dict(tables.get("locked", {}))
+    others: list[str] = []
     for name, one in hands.items():
         groups, home = _groups(one), one.get("home", [])
         if len(groups) != len(home):
             raise SetupError(f"{what}: hands.{name}: home must be a number for each of its {len(groups)} joints")
         for group, at in zip(groups, home, strict=True):
+            others += [joint for joint in group if joint not in mine]
             locked.update({joint: at / len(group) for joint in group if joint not in mine and joint not in locked})
-    return {**tables, **hands[driven], "locked": locked, "hands": list(hands), "driven": driven}
+    return {**tables, **hands[driven], "locked": locked, "hands": list(hands), "driven": driven, "others": others}
 
 
 def _groups(hand: dict[str, Any]) -> list[list[str]]:

@@ -36,7 +36,10 @@ class HandedRobot:
         for one in each:
             at = one.arm.posture(one.start.l, one.start.psi)
             for channel, value in zip(one.arm.channels, at, strict=True):
-                joints.setdefault(channel.moves, channel)
+                if joints.setdefault(channel.moves, channel) != channel:
+                    raise SetupError(
+                        f"the joint {channel.moves!r} of {name} is another's too, with other speeds: give it the same"
+                    )
                 still.setdefault(channel.moves, value)
         follows = frozenset.intersection(*(one.arm.follows for one in each))
         self.arm = OneOf(tuple(joints.values()), own.arm, tuple(still.values()), follows)

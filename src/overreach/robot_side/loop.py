@@ -29,6 +29,7 @@ from overreach.link.messages import (
     encode,
 )
 from overreach.link.robot_end import RobotEnd
+from overreach.model.handed import hands_of
 from overreach.plugs import law_plug
 from overreach.requests import ArmRequest, Request, RestartRequest
 from overreach.robot_side.report import Reporter
@@ -92,6 +93,8 @@ class Loop:
         self._clock = clock
         self._model = robot.model
         law = law if law.name else msgspec.structs.replace(law, name=usual_law(robot.model).name)
+        if hands_of(robot.model) and not hasattr(robot, "choose"):
+            raise SetupError(f"the robot {robot.model.name} has several hands, and its driver has no `choose`")
         built = build(usual(robot.model, law), robot.model)
         self.settings = built.settings
         self.pilot = Pilot(built.model, built.law, max_delay=max_delay)
@@ -244,16 +247,19 @@ class Loop:
             raise SetupError(f"Let go first: {law!r} has to be loaded, which makes the loop late for a moment.")
         if self._building is not None:
             raise SetupError("Other settings are being made ready: try again.")
-        self._building = Building(settings, self._builder.begin(settings, self._model), answer, slow)
+        self._building = Building(
+            settings, self._builder.begin(settings, self._model, self.settings.hand), answer, slow
+        )
 
     def _swap(self, building: Building) -> None:
         """Put finished settings into force, or answer why they cannot be used."""
         self._building = None
         try:
             built = building.future.result()
-            self.pilot.configure(built.law, built.model, built.settings.speed_scale, built.planner)
             if built.settings.hand != self.settings.hand:
-                cast(Handed, self._robot).choose(built.settings.hand)
+                self._choose(built)
+            else:
+                self.pilot.configure(built.law, built.model, built.settings.speed_scale, built.planner)
         except OverreachError as error:
             building.answer(Refused(str(error)))
         except BaseException as error:  # a plug-in law may raise anything when it is imported or made
@@ -264,6 +270,16 @@ class Loop:
             self._loaded.add(_libraries(built.settings.law))
             self._reception.take(built)
             building.answer(Accepted())
+
+    def _choose(self, built: Built) -> None:
+        """Drive another hand. Where that fails, the one that was driven stays."""
+        robot, before = cast(Handed, self._robot), self.settings.hand
+        robot.choose(built.settings.hand)
+        try:
+            self.pilot.configure(built.law, built.model, built.settings.speed_scale, built.planner)
+        except BaseException:
+            robot.choose(before)
+            raise
 
     def _publish(self, tick: Tick) -> None:
         """Tell of a tick; what cannot be sent, of an arm or robot that is a plug-in, is a fault."""

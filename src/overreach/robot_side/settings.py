@@ -52,17 +52,19 @@ def usual(model: Model, law: Choice) -> Settings:
     return msgspec.structs.replace(settings, blend=Choice(settings.blend.name, widths))
 
 
-def build(settings: Settings, model: Model) -> Built:
+def build(settings: Settings, model: Model, hand: str = "") -> Built:
     """Return `settings` ready for use; raises SetupError if they cannot be used. May import, and be slow.
 
+    hand: the one that is driven so far, by default that of `model`: another begins with its own whole workspace.
     The speed is left to the gate, which checks it when they come into force.
     """
-    if isinstance(model, HandedRobot) and settings.hand != model.hand:
-        model = model.with_hand(settings.hand)
+    if isinstance(model, HandedRobot):
+        driven, model = hand or model.hand, model.with_hand(settings.hand)
+    if settings.hand != hand_of(model):
+        raise SetupError(f"{model.name} has one hand: there is no {settings.hand!r}")
+    if isinstance(model, HandedRobot) and settings.hand != driven:
         own = usual(model, settings.law)  # the other hand's workspace is its own, and the bands in it
         settings = msgspec.structs.replace(settings, workspace=own.workspace, blend=own.blend)
-    elif settings.hand != hand_of(model):
-        raise SetupError(f"{model.name} has one hand: there is no {settings.hand!r}")
     placed_model = model.placed(model.mount, settings.workspace)
     check_workspace(placed_model, settings.workspace)
     blend = load_blend(settings.blend.name, settings.blend.parameters)
@@ -115,17 +117,17 @@ def _ordinary() -> None:
 class Builder:
     """Builds settings on threads of their own, which nobody waits for at the end."""
 
-    def begin(self, settings: Settings, model: Model) -> Future[Built]:
-        """Begin to build; the future holds the result, or the SetupError."""
+    def begin(self, settings: Settings, model: Model, hand: str = "") -> Future[Built]:
+        """Begin to build; the future holds the result, or the SetupError. hand: as in `build`."""
         future: Future[Built] = Future()
-        Thread(target=self._build, args=(settings, model, future), name="settings", daemon=True).start()
+        Thread(target=self._build, args=(settings, model, hand, future), name="settings", daemon=True).start()
         return future
 
     @staticmethod
-    def _build(settings: Settings, model: Model, future: Future[Built]) -> None:
+    def _build(settings: Settings, model: Model, hand: str, future: Future[Built]) -> None:
         _ordinary()
         try:
-            built = build(settings, model)
+            built = build(settings, model, hand)
         except BaseException as error:  # a law that is a plug-in may raise anything: it is told where it is taken
             future.set_exception(error)
             return

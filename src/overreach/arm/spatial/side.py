@@ -27,6 +27,7 @@ ANY = 1e3
 """The correction may be whatever it has to [m/s^2]; what the base cannot do of it is cut off, and told."""
 SHORT = 5e-4
 """What is cut off of a drive's speed counts as rounding up to this [m/s]."""
+WHOLE = 1.0 - 1e-9
 SURELY = 0.98
 """The drive is planned within this part of what its speed can change by: the rest is for what is not foreseen."""
 
@@ -118,29 +119,45 @@ class SideChain(SpatialChain):
         u_r, u_t, u_z = asked.u
         # Midway of the period the lever is a little longer, and the hand's velocity seen from a base that has turned.
         longer = 0.5 * asked.dt * (u_r - c * v_b - k_r * w_b)
+        lever = (k_t + longer + 0.5 * asked.dt * u_r) / sn
         room = Room(asked.was, SURELY * change_v, change_w, drive.v_max, drive.w_max)
-        turn, part = room.within(w_b, (k_t + longer + 0.5 * asked.dt * u_r) / sn, -u_t / sn)
-        u_r, u_t, u_z = part * u_r, part * u_t, part * u_z
         slip_x, slip_y, slip_w = asked.slip
-        step = self._side.driven.at((0.0, *self.joints), mount).step(
-            msgspec.structs.replace(
-                asked,
-                u=(u_r, u_t + c * slip_y - sn * slip_x + k_t * slip_w, u_z),
-                w_c=part * asked.w_c,
-                plan=((k_t * turn - u_t) / sn, 0.0, turn),
-                joints=(0.0, *asked.joints),
-                turn=(part * asked.turn[0], part * asked.turn[1], part * asked.turn[2]),
+        slip_t = c * slip_y - sn * slip_x + k_t * slip_w
+        driven = self._side.driven.at((0.0, *self.joints), mount)
+
+        def tried(part: float) -> tuple[float, Step]:
+            """Ask for a part of the command; return what is left of it, and the step."""
+            turn, fits = room.within(part * w_b, lever, -part * u_t / sn)
+            left = part * fits
+            return left, driven.step(
+                msgspec.structs.replace(
+                    asked,
+                    u=(left * u_r, left * u_t + slip_t, left * u_z),
+                    w_c=left * asked.w_c,
+                    plan=((k_t * turn - left * u_t) / sn, 0.0, turn),
+                    joints=(0.0, *asked.joints),
+                    turn=(left * asked.turn[0], left * asked.turn[1], left * asked.turn[2]),
+                )
             )
-        )
+
+        left, step = tried(1.0)
+        verdict, reason = step.verdict, step.reason
+        if step.scale < WHOLE and verdict is not Verdict.ACCELERATION:
+            # What the arm cannot follow is scaled before the base is asked: then its drive and turning brake together.
+            left, step = tried(left * step.scale)
+            if step.verdict is not Verdict.MOVING:
+                verdict, reason = step.verdict, step.reason
+        scale = left * step.scale
         v_x, _, w_z = step.base
         wanted, most = v_x + step.joints[0], min(drive.v_max, asked.was[0] + change_v)
         v_x = max(-drive.v_max, asked.was[0] - change_v, min(most, wanted))
-        scale, verdict = part * step.scale, step.verdict
         if abs(wanted - v_x) > SHORT:  # the base cannot: what it does is told, and not called whole
-            scale, verdict = min(scale, NOT_WHOLE), Verdict.ACCELERATION
-        elif part < 1.0 and verdict is Verdict.MOVING:
+            scale, verdict, reason = min(scale, NOT_WHOLE), Verdict.ACCELERATION, ""
+        elif left < WHOLE and verdict is Verdict.MOVING:
             verdict = Verdict.SWINGING
-        return msgspec.structs.replace(step, joints=step.joints[1:], base=(v_x, 0.0, w_z), scale=scale, verdict=verdict)
+        return msgspec.structs.replace(
+            step, joints=step.joints[1:], base=(v_x, 0.0, w_z), scale=scale, verdict=verdict, reason=reason
+        )
 
 
 LEVEL = 0.3

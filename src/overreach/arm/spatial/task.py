@@ -18,8 +18,9 @@ FOLDED = 1.5
 back over its shoulder, in which no pitch can be told."""
 YIELDS = 0.8
 """A fixed yaw yields from this part of its greatest deviation D from the bearing, to D at 2 - YIELDS of it ..."""
-BEHIND = 0.6
-"""... and goes back through the bearing within so much [rad] of half a turn, so that nothing jumps there."""
+BEHIND, BEHIND_PART = 0.6, 1.2
+"""... and goes back through the bearing within so much [rad] of half a turn, or this part of D where that is more and
+there is room for it, so that nothing jumps there."""
 
 
 def count(held: int) -> int:
@@ -83,15 +84,16 @@ def yielding(wanted: float, most: float) -> tuple[float, float]:
     size = abs(wanted)
     sign = 1.0 if wanted >= 0.0 else -1.0
     begin, end = YIELDS * most, (2.0 - YIELDS) * most
+    behind = min(max(BEHIND, BEHIND_PART * most), 0.97 * (math.pi - end))
     if size <= begin:
         return wanted, 1.0
     if size <= end:
         part = (size - begin) / (end - begin)
         return sign * (begin + (end - begin) * (part - 0.5 * part * part)), 1.0 - part
-    if size < math.pi - BEHIND:
+    if size < math.pi - behind:
         return sign * most, 0.0
-    part = (size - math.pi + BEHIND) / BEHIND
-    return sign * most * (1.0 - part * part), -2.0 * most * part / BEHIND
+    part = (size - math.pi + behind) / behind
+    return sign * most * (1.0 - part * part), -2.0 * most * part / behind
 
 
 def wanted(f: float, most: float) -> float:

@@ -133,6 +133,12 @@ def _check_order(
     if path[-1] != base:
         raise SetupError(f"hand.body: {description.hand.body!r} is not carried by base.body, {description.base.body!r}")
     outward = [j for body in reversed(path[:-1]) for j in range(model.njnt) if int(model.jnt_bodyid[j]) == body]
+    for joint in outward:
+        if (name := model.joint(joint).name) in description.others:
+            raise SetupError(
+                f"hands.{description.driven}: joint {name!r} carries this hand too, but is only among another's: put "
+                "it into the joints of both"
+            )
     given = [joint for group in joints for joint in group]
     names = [model.joint(joint).name for joint in given]
     for joint, name in zip(given, names, strict=True):

@@ -27,7 +27,8 @@ def toml(
     wheels = ", ".join(f'"{wheel}"' for wheel in found.wheels)
     times = f"   {guessed}{ACCELERATION:g} times the speed"
     offset = ", ".join(f"{found.ahead * one + 0.0:g}" for one in found.approach)
-    slow = "".join(f"\n[locked]\n{lift} = {at:g}   {guessed}slower than the hand is to go\n" for lift, at in places)
+    note = f"{guessed}slower than the hand is to go, and midway: where is it?"
+    slow = "".join(f"\n[locked]\n{lift} = {at:g}   {note}\n" for lift, at in places)
     others = f"   # other chains end at {', '.join(found.chains)}" if found.chains else ""
     return f"""\
 # A first description, from the model file alone. Look at every line that is marked as guessed.

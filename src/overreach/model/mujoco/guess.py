@@ -3,7 +3,7 @@
 base    the free body, or the root; the frame on the ground, if one carries it; its wheels the endless hinges whose axis
         is level, on it or on its suspension
 arm     the longest chain of hinges and slides, neither wheels nor fingers, from the base to a hand: up to where it
-        branches into fingers; a lift that is slower than the hand is to go up and down is locked where it is
+        branches into fingers; a lift that is slower than the hand is to go up and down is locked midway
 hand    the body at its end, as far out as its fingers are; their joints, its gripper
 """
 

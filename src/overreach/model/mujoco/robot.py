@@ -115,7 +115,7 @@ def _key(model: mujoco.MjModel, description: Description) -> str:
         digest.update((values.round(6) + 0.0 if values.dtype.kind == "f" else values).tobytes())
     own = msgspec.structs.replace(description, workspace={}, name="", summary="", model="")
     told: dict[str, Any] = msgspec.to_builtins(own)
-    for name in ("mode", "hands", "driven"):
+    for name in ("mode", "hands", "driven", "others"):
         del told[name]
     if not told["arm"]["never_touch"]:
         del told["arm"]["never_touch"]

@@ -18,6 +18,8 @@ MESHES = (".stl", ".obj", ".msh")
 """Kinds of meshes that MuJoCo reads."""
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 MOST_LINKS = 2000
+HAIR = 1e-4
+"""Way [rad, m] of a joint that is to have none."""
 TOLD = 3
 """So many names are told of those that were repaired alike."""
 FASTEST = 10.0
@@ -58,9 +60,9 @@ def read_urdf(path: Path) -> Source:
             impossible.append(link.get("name", ""))
     if impossible:
         warnings.append(f"{_many(impossible, 'link')} with a mass or inertia that no body can have: it is left out")
-    endless = [joint.get("name", "") for joint in robot.findall("joint") if _range_is_left_out(joint)]
-    if endless:
-        warnings.append(f"{_many(endless, 'joint')} with no way between the limits: taken to have none")
+    still = [joint.get("name", "") for joint in robot.findall("joint") if _has_no_way(joint, path)]
+    if still:
+        warnings.append(f"{_many(still, 'joint')} with no way between the limits: given a hair's breadth")
     robot[:] = [element for element in robot if element.tag in ("link", "joint")]
     options = ET.SubElement(robot, "mujoco")
     ET.SubElement(
@@ -162,12 +164,27 @@ def _many(names: list[str], what: str) -> str:
     return f"{len(names)} {what}{'s' if len(names) > 1 else ''} ({', '.join(names[:TOLD])}{more})"
 
 
-def _range_is_left_out(joint: ET.Element) -> bool:
-    """Make a hinge endless whose limits leave it no way, as a gripper's often do: MuJoCo leaves them out as well."""
+def _has_no_way(joint: ET.Element, path: Path) -> bool:
+    """Give a joint whose limits leave it no way, as a gripper's often do, a little: else it would have no limits.
+
+    Raises SetupError for limits in the wrong order.
+    """
     limit = joint.find("limit")
-    if joint.get("type") != "revolute" or limit is None or limit.get("lower", "0") != limit.get("upper", "0"):
+    if joint.get("type") not in ("revolute", "prismatic") or limit is None:
         return False
-    joint.set("type", "continuous")
+    try:
+        lower, upper = float(limit.get("lower", "0")), float(limit.get("upper", "0"))
+    except ValueError:
+        return False  # told by who reads it
+    if lower > upper:
+        raise SetupError(
+            f"the model file {str(path)!r} cannot be used: the limits of joint {joint.get('name')!r} are {lower:g} and "
+            f"{upper:g}, in the wrong order"
+        )
+    if lower < upper:
+        return False
+    limit.set("lower", repr(lower))
+    limit.set("upper", repr(lower + HAIR))
     return True
 
 
