@@ -333,7 +333,7 @@ def test_settings_are_made_beside_the_loop(bench: Bench, monkeypatch: pytest.Mon
     begun: list[Settings] = []
     going: Future[Built] = Future()
 
-    def begin(settings: Settings, model: Model) -> Future[Built]:
+    def begin(settings: Settings, model: Model, hand: str) -> Future[Built]:
         begun.append(settings)
         return going
 

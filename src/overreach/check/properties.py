@@ -69,7 +69,7 @@ def properties(
     add("contacts with itself", smooth.self_contacts + steps.self_contacts, 0.0)
     if not model.base.omni:
         add("sideways velocity of the base [m/s]", max(smooth.lateral_base_max, steps.lateral_base_max), 0.0)
-    add("beyond the edges in l [m]", smooth.out_l, 3e-3 + (swung_out(model) if aside else 0.0))
+    add("beyond the edges in l [m]", smooth.out_l, 3e-3)
     add("beyond the edges in psi [rad]", smooth.out_psi, 0.03)
     add("beyond the edges in z [m]", smooth.out_z, 1e-3)
     add("base path of a reach inside [m]", smooth.reach_base_path, STANDS if aside else 0.0)
@@ -80,11 +80,6 @@ def properties(
     add(f"from mid-reach after {OUT_M:g} m outward [m]", recentred(model), 0.01)
     add(f"creep in a circle of {CIRCLE_S:g} s [m]", creep(model), 1e-3)
     return found
-
-
-def swung_out(model: DescribedRobot) -> float:
-    """Return by how much [m] a base that swings by a quarter moves the end of an arm whose line misses its centre."""
-    return 0.5 * float(np.pi) * float(np.hypot(model.mount.s_x, model.mount.s_y))
 
 
 def _hand(model: DescribedRobot, driven: Driven) -> tuple[Array, Array, Array]:
