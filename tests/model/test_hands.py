@@ -215,8 +215,9 @@ def test_a_hand_keeps_the_attitude_that_it_was_turned_to(pair: str) -> None:
         drive.push(0.3, Twist(0.05))
         drive.push(0.5, Twist())
     again = single.arm.at(drive.robot.true.q[:ENDS], single.mount).attitude
-    assert np.arccos(0.5 * (np.trace(turned @ again.T) - 1.0)) < 0.1  # its bearing has changed a little
-    assert abs(turned[2, 0] - again[2, 0]) < 0.01
+    assert abs(turned[2, 0]) > 0.1
+    assert np.abs(turned - again)[2].max() < 0.01
+    assert np.abs(turned - again).max() < 0.1  # its bearing may have changed a little
 
 
 def test_a_workspace_made_smaller_is_the_hands_own(pair: str) -> None:
