@@ -56,11 +56,11 @@ def test_bands_end_at_their_edges(psi: float, u_t: float, w_c: float, mount: Mou
 def test_a_sweep_past_the_bearing_turns_the_base_about_the_shoulder(l: float, w_c: float, mount: Mount) -> None:
     """Where the base has all of the turning, a pure sweep leaves the shoulder where it is in the world."""
     psi = WORKSPACE.psi_max + 0.5 if w_c >= 0.0 else WORKSPACE.psi_min - 0.5
-    blend = Step()
+    blend, u_t = Step(), w_c * l
     _, sigma, v_x, v_y, w_b, _, _ = authority.omni(
-        l, psi, 0.0, w_c * l, w_c, blend.rise, limits_of(WORKSPACE, blend), mount.three
+        l, psi, 0.0, u_t, w_c, blend.rise, limits_of(WORKSPACE, blend), mount.three
     )
-    if w_c != 0.0:
+    if u_t != 0.0:  # it is, too, of the smallest turning that a float can say
         assert sigma == 1.0
     at = (v_x - w_b * mount.s_y, v_y + w_b * mount.s_x)
     assert math.hypot(*at) <= 1e-12
