@@ -15,7 +15,7 @@ from overreach.law.blend import Blend, Rise, Smoothstep
 from overreach.law.body import CarryingPlanner
 from overreach.law.laws import Law, Share
 from overreach.law.lead import lead
-from overreach.law.recentre import CHOICES, OFF, USUAL, Carried, Centring
+from overreach.law.recentre import CHOICES, OFF, SPARE, USUAL, Carried, Centring
 from overreach.model.model import Model
 from overreach.parameters import choice
 from overreach.types import HandTwist, Plan, Split, Twist
@@ -24,17 +24,14 @@ from overreach.verdicts import Verdict
 SURE = 1e-3
 """Where less than this part of the hand's motion is along the base's way, the base swings on as it does."""
 STRAIGHT = 0.2
-"""The base drives at most 1/STRAIGHT times as fast as it must for an arm that is straight to its side; nearer to an arm
-that points along its way the whole command is scaled."""
+"""Sine of the least angle between the arm and the way of the base at which the hand keeps its whole speed.
+The base goes 1/sine times as fast."""
 STILL = 0.01
 """A base that turns slower than this [rad/s] does not swing."""
 SWINGS = 0.6
 """The base swings in this part of a band; in the rest, at its end, the hand waits."""
 ALONG = 0.25
 """Length [m] in which the way of the base closes in on that of the hand by 1/e, as it re-centres the arm."""
-SPARE = 0.95
-"""Re-centring takes no more than this part of the base's greatest speed."""
-
 WITHIN = 1.0 - 1e-9
 """A base is asked for this part of its greatest speeds: no rounding is to pass them."""
 NARROWEST = 0.01

@@ -60,11 +60,11 @@ def build(settings: Settings, model: Model, hand: str = "") -> Built:
     """
     if isinstance(model, HandedRobot):
         driven, model = hand or model.hand, model.with_hand(settings.hand)
-    if settings.hand != hand_of(model):
+        if settings.hand != driven:
+            own = usual(model, settings.law)  # the other hand's workspace is its own, and the bands in it
+            settings = msgspec.structs.replace(settings, workspace=own.workspace, blend=own.blend)
+    elif settings.hand != hand_of(model):
         raise SetupError(f"{model.name} has one hand: there is no {settings.hand!r}")
-    if isinstance(model, HandedRobot) and settings.hand != driven:
-        own = usual(model, settings.law)  # the other hand's workspace is its own, and the bands in it
-        settings = msgspec.structs.replace(settings, workspace=own.workspace, blend=own.blend)
     placed_model = model.placed(model.mount, settings.workspace)
     check_workspace(placed_model, settings.workspace)
     blend = load_blend(settings.blend.name, settings.blend.parameters)
